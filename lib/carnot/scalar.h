@@ -1,0 +1,60 @@
+// What the templated formulas ask of a scalar: constants, the underlying value, the round-off unit.
+//
+// A formula is written once and runs on double, long double, a quad type and (nested) ceres::Jet.
+// Nested Jets of Ceres 2.1 convert neither from 0.5 nor multiply by it, hence constant<T>(0.5).
+#pragma once
+
+#include <ceres/jet.h>
+
+#include <limits>
+#include <type_traits>
+
+namespace carnot {
+
+template <class T, int N>
+using Jet = ceres::Jet<T, N>;
+
+template <class T>
+struct IsJet : std::false_type {};
+template <class T, int N>
+struct IsJet<Jet<T, N>> : std::true_type {};
+template <class T>
+inline constexpr bool kIsJet = IsJet<T>::value;
+
+// The real type at the bottom of a tower of Jets.
+template <class T>
+struct RealOf {
+  using type = T;
+};
+template <class T, int N>
+struct RealOf<Jet<T, N>> : RealOf<T> {};
+template <class T>
+using Real = typename RealOf<T>::type;
+
+// A number that does not depend on the variables of differentiation.
+template <class T, class U>
+constexpr T constant(const U& value) {
+  if constexpr (kIsJet<T>) {
+    return T(constant<typename T::Scalar>(value));
+  } else {
+    return T(value);
+  }
+}
+
+// The value without its derivatives.
+template <class T>
+Real<T> value_of(const T& x) {
+  if constexpr (kIsJet<T>) {
+    return value_of(x.a);
+  } else {
+    return x;
+  }
+}
+
+// Unit round-off distance: the gap between 1 and the next number.
+template <class T>
+constexpr Real<T> epsilon() {
+  return std::numeric_limits<Real<T>>::epsilon();
+}
+
+}  // namespace carnot

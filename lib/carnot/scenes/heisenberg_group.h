@@ -1,0 +1,83 @@
+// The Heisenberg group with its Carnot-Caratheodory metric.
+//
+// M = diag(1, 1, 0), g = (y/2, -x/2, 1): z' = (x y' - y x')/2, the area swept in the plane, and the
+// length is that of the plane curve (x, y). M is singular, M > 0 on ker G. Extremals project to
+// arcs of circles of curvature p_z: with w = p_z and u = (u1, u2)(0) at the origin,
+//
+//   x + i y = (u1 + i u2) (exp(i w t) - 1) / (i w),   z = |u|^2 (w t - sin w t) / (2 w^2).
+//
+// Invariants: H, p_z, x p_y - y p_x. Source: Montgomery, A Tour of Subriemannian Geometries (2002).
+#pragma once
+
+#include <cmath>
+
+#include "carnot/linear_algebra.h"
+#include "carnot/scalar.h"
+#include "carnot/scene_info.h"
+
+namespace carnot::scenes {
+
+struct HeisenbergGroup {
+  static constexpr int kDof = 3;
+  static constexpr int kMultipliers = 1;
+
+  template <class T>
+  [[nodiscard]] Matrix<T, 3, 3> mass(const Vector<T, 3>& /*q*/) const {
+    Matrix<T, 3, 3> m = Matrix<T, 3, 3>::Constant(constant<T>(0));
+    m(0, 0) = m(1, 1) = constant<T>(1);
+    return m;
+  }
+
+  template <class T>
+  [[nodiscard]] Matrix<T, 1, 3> constraints(const Vector<T, 3>& q) const {
+    const T half = constant<T>(0.5);
+    return {half * q[1], -half * q[0], constant<T>(1)};
+  }
+
+  template <class T>
+  [[nodiscard]] Matrix<T, 3, 2> frame(const Vector<T, 3>& q) const {
+    const T half = constant<T>(0.5);
+    const T zero = constant<T>(0);
+    const T one = constant<T>(1);
+    Matrix<T, 3, 2> b;
+    // clang-format off
+    b << one,          zero,
+         zero,         one,
+         -half * q[1], half * q[0];
+    // clang-format on
+    return b;
+  }
+
+  // d/dq [p.B u - u.u/2].
+  template <class T>
+  [[nodiscard]] Vector<T, 3> frame_gradient(const Vector<T, 3>& /*q*/,
+                                            const Vector<T, 3>& p,
+                                            const Vector<T, 2>& u) const {
+    const T half = constant<T>(0.5) * p[2];
+    return {half * u[1], -half * u[0], constant<T>(0)};
+  }
+
+  // The extremal from the origin with momentum p at time t, in closed form.
+  static Vector<double, 3> closed_form(const Vector<double, 3>& p, double t) {
+    const double w = p[2];
+    const double speed2 = p[0] * p[0] + p[1] * p[1];
+    if (w * t == 0) return {p[0] * t, p[1] * t, 0};
+    const double s = std::sin(w * t) / w;
+    const double half_sine = std::sin(0.5 * w * t);
+    const double c = 2 * half_sine * half_sine / w;  // (1 - cos w t) / w
+    return {p[0] * s - p[1] * c, p[1] * s + p[0] * c, speed2 * (t - s) / (2 * w)};
+  }
+
+  [[nodiscard]] SceneInfo info() const {
+    SceneInfo info;
+    info.name = "heisenberg-group";
+    info.summary = "the Heisenberg group: M = diag(1, 1, 0), z' = (x y' - y x')/2";
+    info.reference = "Montgomery, A Tour of Subriemannian Geometries (2002), ch. 1";
+    info.configuration = {{"x", "length", 0}, {"y", "length", 0}, {"z", "length^2", 0}};
+    info.symmetries.mirrors = {{-1, -1, 1}, {1, -1, -1}};
+    info.drawing.view = Drawing::View::kSpace;
+    return info;
+  }
+};
+
+}  // namespace carnot::scenes

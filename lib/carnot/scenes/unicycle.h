@@ -1,0 +1,90 @@
+// A wheel, or knife edge, in the plane: the sub-Riemannian problem on SE(2).
+//
+// At (x, y) with heading theta, no slip sideways: x' sin theta - y' cos theta = 0. Cost
+// (x'^2 + y'^2 + beta^2 theta'^2)/2, beta a length. Admissible: x' = u1 cos, y' = u1 sin,
+// theta' = u2. Invariants: H, p_x, p_y, x p_y - y p_x + p_theta.
+// Source: Moiseev & Sachkov, ESAIM: COCV 16 (2010).
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "carnot/linear_algebra.h"
+#include "carnot/scalar.h"
+#include "carnot/scene_info.h"
+
+namespace carnot::scenes {
+
+struct Unicycle {
+  static constexpr int kDof = 3;
+  static constexpr int kMultipliers = 1;
+
+  double beta = 1;  // turning by one radian costs as much as driving this far
+
+  template <class T>
+  [[nodiscard]] Matrix<T, 3, 3> mass(const Vector<T, 3>& /*q*/) const {
+    Matrix<T, 3, 3> m = Matrix<T, 3, 3>::Constant(constant<T>(0));
+    m(0, 0) = m(1, 1) = constant<T>(1);
+    m(2, 2) = constant<T>(beta * beta);
+    return m;
+  }
+
+  template <class T>
+  [[nodiscard]] Matrix<T, 1, 3> constraints(const Vector<T, 3>& q) const {
+    using std::cos, std::sin;
+    return {sin(q[2]), -cos(q[2]), constant<T>(0)};
+  }
+
+  template <class T>
+  [[nodiscard]] Matrix<T, 3, 2> frame(const Vector<T, 3>& q) const {
+    using std::cos, std::sin;
+    const T zero = constant<T>(0);
+    Matrix<T, 3, 2> b;
+    // clang-format off
+    b << cos(q[2]), zero,
+         sin(q[2]), zero,
+         zero,      constant<T>(1);
+    // clang-format on
+    return b;
+  }
+
+  // d/dq [p.B u - u'B'M B u/2].
+  template <class T>
+  [[nodiscard]] Vector<T, 3> frame_gradient(const Vector<T, 3>& q,
+                                            const Vector<T, 3>& p,
+                                            const Vector<T, 2>& u) const {
+    using std::cos, std::sin;
+    const T zero = constant<T>(0);
+    return {zero, zero, u[0] * (p[1] * cos(q[2]) - p[0] * sin(q[2]))};
+  }
+
+  static constexpr auto parameters() {
+    using P = Parameter<Unicycle>;
+    return std::array{P{"beta",
+                        [](Unicycle& s) -> double& { return s.beta; },
+                        "length",
+                        Range::positive(),
+                        "turning by one radian costs as much as driving this far"}};
+  }
+
+  [[nodiscard]] SceneInfo info() const {
+    SceneInfo info;
+    info.name = "unicycle";
+    info.summary = "a wheel in the plane: the sub-Riemannian problem on SE(2)";
+    info.reference = "Moiseev & Sachkov, ESAIM: COCV 16 (2010)";
+    info.configuration = {
+        {"x", "length", 0}, {"y", "length", 0}, {"theta", "rad", 2 * std::numbers::pi}};
+    info.symmetries = {{{1, -1, -1}}, 0, 1, {2}};
+    info.drawing = {Drawing::View::kPlane, {0, 1, 2}, [r = 0.15 * beta](const double* q) {
+                      const double dx = r * std::cos(q[2]);
+                      const double dy = r * std::sin(q[2]);
+                      return std::vector<Polyline>{
+                          {Polyline::Role::kWheel,
+                           {{q[0] - dx, q[1] - dy}, {q[0] + dx, q[1] + dy}}}};
+                    }};
+    return info;
+  }
+};
+
+}  // namespace carnot::scenes

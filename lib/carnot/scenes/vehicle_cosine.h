@@ -1,0 +1,97 @@
+// The vehicle on a bumpy surface, V = -cos r (McLachlan et al. 2013, section 5).
+//
+// r is the distance of the vehicle's midpoint (x - l/2 cos theta, y - l/2 sin theta) from the
+// origin. V is a function of r^2 (stumpff.h) and so is smooth at r = 0 too. Invariants: H, and
+// x p_y - y p_x + p_theta + p_phi, for V is symmetric under rotations about the origin.
+#pragma once
+
+#include "carnot/scenes/vehicle.h"
+#include "carnot/stumpff.h"
+
+namespace carnot::scenes {
+
+struct VehicleCosine {
+  static constexpr int kDof = Vehicle::kDof;
+  static constexpr int kMultipliers = Vehicle::kMultipliers;
+
+  Vehicle vehicle;
+
+  template <class T>
+  [[nodiscard]] Matrix<T, 4, 4> mass(const Vector<T, 4>& q) const {
+    return vehicle.mass(q);
+  }
+  template <class T>
+  [[nodiscard]] Matrix<T, 2, 4> constraints(const Vector<T, 4>& q) const {
+    return vehicle.constraints(q);
+  }
+  template <class T>
+  [[nodiscard]] Matrix<T, 4, 2> frame(const Vector<T, 4>& q) const {
+    return vehicle.frame(q);
+  }
+
+  template <class T>
+  [[nodiscard]] Matrix<T, 2, 2> frame_mass(const Vector<T, 4>& q) const {
+    return vehicle.frame_mass(q);
+  }
+
+  template <class T>
+  [[nodiscard]] T potential(const Vector<T, 4>& q) const {
+    const Vector<T, 2> m = midpoint(q);
+    return -stumpff<0>(T(m[0] * m[0] + m[1] * m[1]));
+  }
+
+  // The vehicle's own gradient and grad V = sin(r)/r m . dm/dq.
+  template <class T>
+  [[nodiscard]] Vector<T, 4> frame_gradient(const Vector<T, 4>& q,
+                                            const Vector<T, 4>& p,
+                                            const Vector<T, 2>& u) const {
+    using std::cos, std::sin;
+    const Vector<T, 2> m = midpoint(q);
+    const T slope = stumpff<1>(T(m[0] * m[0] + m[1] * m[1]));
+    const T half = constant<T>(0.5 * vehicle.length);
+    Vector<T, 4> gradient = vehicle.frame_gradient(q, p, u);
+    gradient[0] += slope * m[0];
+    gradient[1] += slope * m[1];
+    gradient[2] += slope * half * (m[0] * sin(q[2]) - m[1] * cos(q[2]));
+    return gradient;
+  }
+
+  static constexpr auto parameters() {
+    using P = Parameter<VehicleCosine>;
+    constexpr auto of = Vehicle::parameters();
+    return std::array{P{of[0].name,
+                        [](VehicleCosine& s) -> double& { return s.vehicle.alpha; },
+                        of[0].unit,
+                        of[0].range,
+                        of[0].meaning},
+                      P{of[1].name,
+                        [](VehicleCosine& s) -> double& { return s.vehicle.beta; },
+                        of[1].unit,
+                        of[1].range,
+                        of[1].meaning},
+                      P{of[2].name,
+                        [](VehicleCosine& s) -> double& { return s.vehicle.length; },
+                        of[2].unit,
+                        of[2].range,
+                        of[2].meaning}};
+  }
+
+  [[nodiscard]] SceneInfo info() const {
+    SceneInfo info = vehicle.info();
+    info.name = "vehicle-cosine";
+    info.summary = "the vehicle in the potential V = -cos r of its midpoint";
+    info.symmetries.x = info.symmetries.y = -1;  // V is not the same everywhere
+    info.symmetries.angles.clear();
+    return info;
+  }
+
+ private:
+  template <class T>
+  [[nodiscard]] Vector<T, 2> midpoint(const Vector<T, 4>& q) const {
+    using std::cos, std::sin;
+    const T half = constant<T>(0.5 * vehicle.length);
+    return {q[0] - half * cos(q[2]), q[1] - half * sin(q[2])};
+  }
+};
+
+}  // namespace carnot::scenes

@@ -1,0 +1,49 @@
+// Stumpff functions c_k(s) = sum_j (-s)^j / (2j + k)!, entire in s.
+//
+// c_0(r^2) = cos r and c_1(r^2) = sin(r)/r, so a potential that is even in a distance r can be
+// written in r^2 and stays smooth at r = 0, where sqrt has no derivative. From the series
+//
+//   s c_{k+2} = 1/k! - c_k,      dc_k/ds = (k c_{k+2} - c_{k+1}) / 2.
+//
+// Source: Stiefel & Scheifele, Linear and Regular Celestial Mechanics (1971), section 11.
+#pragma once
+
+#include <cmath>
+
+#include "carnot/scalar.h"
+
+namespace carnot {
+
+// c_k(s) for s >= 0. Values to a few units of round-off; on Jets by the derivative above.
+template <int k, class T>
+T stumpff(const T& s) {
+  if constexpr (kIsJet<T>) {
+    const auto derivative =
+        constant<typename T::Scalar>(0.5) *
+        (constant<typename T::Scalar>(k) * stumpff<k + 2>(s.a) - stumpff<k + 1>(s.a));
+    return T(stumpff<k>(s.a), derivative * s.v);
+  } else {
+    using std::abs, std::cos, std::sin, std::sqrt;
+    if (s < T(1)) {
+      T term(1);
+      for (int i = 2; i <= k; ++i) term /= T(i);
+      T sum = term;
+      for (int j = 1; abs(term) > epsilon<T>() * abs(sum) && j < 40; ++j) {
+        term *= -s / T((2 * j + k - 1) * (2 * j + k));
+        sum += term;
+      }
+      return sum;
+    } else if constexpr (k == 0) {
+      return cos(sqrt(s));
+    } else if constexpr (k == 1) {
+      const T root = sqrt(s);
+      return sin(root) / root;
+    } else {
+      T inverse_factorial(1);
+      for (int i = 2; i <= k - 2; ++i) inverse_factorial /= T(i);
+      return (inverse_factorial - stumpff<k - 2>(s)) / s;
+    }
+  }
+}
+
+}  // namespace carnot

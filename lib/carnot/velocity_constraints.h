@@ -1,0 +1,324 @@
+// Scenes with linear velocity constraints (Prop. 1 of McLachlan et al. 2013).
+//
+// The author writes M(q), the rows of G(q) and, if there is one, V(q). With multipliers lambda
+//
+//   H(q, p, v, lambda) = p.v - v'M v/2 + V + lambda.G v,
+//
+// stationary in y = (v, lambda):   M v - G' lambda = p   and   G v = 0.
+//
+// M may be singular: index 1 needs only M > 0 on ker G and G of full rank. Two routes without
+// pivots lead to v, and a test holds one against the other.
+//
+//   multipliers  M is replaced by A = M + gamma G'G, which has the same (v, lambda) since G v = 0
+//                and is positive definite for M >= 0. Then S = G A^-1 G', S lambda = -G A^-1 p,
+//                v = A^-1 (p + G' lambda). y = (v, lambda).
+//   frame        the scene offers B(q) with G B = 0. Then v = B u and
+//                H(q, p, u) = p.B u - u'(B'M B) u/2 + V, stationary at (B'M B) u = B'p. y = u.
+//                The multipliers, wanted for output only, follow from G G' lambda = G (M v - p).
+//
+// p' = -H_q at frozen y, by Jets from the same formula or by the scene's own `frame_gradient`.
+#pragma once
+
+#include <cmath>
+#include <utility>
+
+#include "carnot/cholesky.h"
+#include "carnot/gradient.h"
+#include "carnot/index_one_system.h"
+
+namespace carnot {
+
+// Needs kDof, kMultipliers, mass(q) (n x n, symmetric), constraints(q) (k x n), all templates.
+template <class S>
+concept VelocityConstrainedScene = requires(const S& scene, const Vector<double, S::kDof>& q) {
+  { scene.mass(q) } -> std::convertible_to<Matrix<double, S::kDof, S::kDof>>;
+  { scene.constraints(q) } -> std::convertible_to<Matrix<double, S::kMultipliers, S::kDof>>;
+};
+
+template <class S>
+concept HasPotential = requires(const S& scene, const Vector<double, S::kDof>& q) {
+  { scene.potential(q) } -> std::convertible_to<double>;
+};
+
+// B(q), n x (n - k), columns that span ker G(q).
+template <class S>
+concept HasFrame = requires(const S& scene, const Vector<double, S::kDof>& q) {
+  {
+    scene.frame(q)
+    } -> std::convertible_to<Matrix<double, S::kDof, S::kDof - S::kMultipliers>>;
+};
+
+// d/dq [p.B(q) u - u'(B'M B) u/2 + V(q)] at fixed p, u: the derivative by hand.
+template <class S>
+concept HasFrameGradient = HasFrame<S> &&
+    requires(const S& scene,
+             const Vector<double, S::kDof>& q,
+             const Vector<double, S::kDof - S::kMultipliers>& u) {
+  { scene.frame_gradient(q, q, u) } -> std::convertible_to<Vector<double, S::kDof>>;
+};
+
+// B'M B, (n - k) x (n - k), by hand.
+template <class S>
+concept HasFrameMass = HasFrame<S> && requires(const S& scene, const Vector<double, S::kDof>& q) {
+  {
+    scene.frame_mass(q)
+    } -> std::convertible_to<
+        Matrix<double, S::kDof - S::kMultipliers, S::kDof - S::kMultipliers>>;
+};
+
+template <VelocityConstrainedScene Scene>
+class VelocityConstraints {
+ public:
+  static constexpr int kDof = Scene::kDof;
+  static constexpr int kMultipliers = Scene::kMultipliers;
+  static constexpr int kFrame = kDof - kMultipliers;
+  static constexpr int kAlgebraic = HasFrame<Scene> ? kFrame : kDof + kMultipliers;
+
+  explicit VelocityConstraints(Scene scene) : scene_(std::move(scene)) {}
+
+  [[nodiscard]] const Scene& scene() const { return scene_; }
+
+  // Solves H_y = 0 and returns q' = v, p' = -H_q. y is output only: the system is linear in it.
+  // Cost, with a frame: one factor of size n - k; else one of size n and one of size k.
+  template <class T>
+  [[nodiscard]] RateStatus rate(const T& /*t*/,
+                                const Vector<T, kDof>& q,
+                                const Vector<T, kDof>& p,
+                                Vector<T, kAlgebraic>& y,
+                                Rate<T, kDof>& out) const {
+    if constexpr (HasFrame<Scene>) {
+      return frame_rate(q, p, y, out);
+    } else {
+      return multiplier_rate(q, p, y, out);
+    }
+  }
+
+  template <class T>
+  [[nodiscard]] T hamiltonian(const T& /*t*/,
+                              const Vector<T, kDof>& q,
+                              const Vector<T, kDof>& p,
+                              const Vector<T, kAlgebraic>& y) const {
+    if constexpr (HasFrame<Scene>) {
+      return frame_hamiltonian(q, p, y);
+    } else {
+      return multiplier_hamiltonian(q, p, y);
+    }
+  }
+
+  // L(q, v) = v'M v/2 - V.
+  template <class T>
+  [[nodiscard]] T lagrangian(const Vector<T, kDof>& q, const Vector<T, kDof>& v) const {
+    return kinetic(q, v) - potential(q);
+  }
+
+  // V(q), zero for a scene without one.
+  template <class T>
+  [[nodiscard]] T potential(const Vector<T, kDof>& q) const {
+    if constexpr (HasPotential<Scene>) {
+      return scene_.potential(q);
+    } else {
+      return constant<T>(0);
+    }
+  }
+
+  // g(q, v) = G(q) v.
+  template <class T>
+  [[nodiscard]] Vector<T, kMultipliers> constraint(const Vector<T, kDof>& q,
+                                                   const Vector<T, kDof>& v) const {
+    return scene_.constraints(q) * v;
+  }
+
+  // sqrt(v'M v), the integrand of the length.
+  template <class T>
+  [[nodiscard]] T speed(const Vector<T, kDof>& q, const Vector<T, kDof>& v) const {
+    using std::sqrt;
+    return sqrt(constant<T>(2) * kinetic(q, v));
+  }
+
+  // M + gamma G'G: the same velocities and multipliers, positive definite where M >= 0 is not.
+  // Any gamma > 0 will do; this one makes both terms of equal size.
+  template <class T>
+  [[nodiscard]] Matrix<T, kDof, kDof> regular_mass(const Vector<T, kDof>& q) const {
+    return regular_mass(q, Matrix<T, kMultipliers, kDof>(scene_.constraints(q)));
+  }
+
+  // lambda from p = M v - G' lambda, by G G' lambda = G (M v - p).
+  template <class T>
+  [[nodiscard]] RateStatus multipliers(const Vector<T, kDof>& q,
+                                       const Vector<T, kDof>& p,
+                                       const Vector<T, kDof>& v,
+                                       Vector<T, kMultipliers>& lambda) const {
+    if constexpr (kMultipliers > 0) {
+      const Matrix<T, kMultipliers, kDof> g = scene_.constraints(q);
+      const Matrix<T, kMultipliers, kMultipliers> gram = g * g.transpose();
+      const Cholesky<T, kMultipliers> factor(gram);
+      if (!factor.positive()) return constraint_failure(gram);
+      const Vector<T, kDof> excess = scene_.mass(q) * v - p;
+      const Vector<T, kMultipliers> rhs = g * excess;
+      lambda = factor.solve(rhs);
+    }
+    return RateStatus::kOk;
+  }
+
+  // p = M v - G' lambda.
+  template <class T>
+  [[nodiscard]] Vector<T, kDof> momentum(const Vector<T, kDof>& q,
+                                         const Vector<T, kDof>& v,
+                                         const Vector<T, kMultipliers>& lambda) const {
+    return scene_.mass(q) * v - scene_.constraints(q).transpose() * lambda;
+  }
+
+  // The velocity in ker G nearest to v in the Euclidean norm.
+  template <class T>
+  [[nodiscard]] RateStatus project(const Vector<T, kDof>& q, Vector<T, kDof>& v) const {
+    // With p = -v and zero velocity, p = M v - G' lambda reads G' lambda = v in the least squares
+    // sense: the part of v to take away.
+    const Vector<T, kDof> zero = Vector<T, kDof>::Constant(constant<T>(0));
+    const Vector<T, kDof> minus_v = -v;
+    Vector<T, kMultipliers> lambda;
+    const RateStatus status = multipliers(q, minus_v, zero, lambda);
+    if (status == RateStatus::kOk) v -= scene_.constraints(q).transpose() * lambda;
+    return status;
+  }
+
+ private:
+  template <class T>
+  [[nodiscard]] T kinetic(const Vector<T, kDof>& q, const Vector<T, kDof>& v) const {
+    const Vector<T, kDof> mv = scene_.mass(q) * v;
+    return constant<T>(0.5) * v.dot(mv);
+  }
+
+  template <class T>
+  [[nodiscard]] Matrix<T, kDof, kDof> regular_mass(const Vector<T, kDof>& q,
+                                                   const Matrix<T, kMultipliers, kDof>& g) const {
+    Matrix<T, kDof, kDof> a = scene_.mass(q);
+    if constexpr (kMultipliers > 0) {
+      const T gamma = a.diagonal().sum() / g.array().square().sum();
+      a += gamma * (g.transpose() * g);
+    }
+    return a;
+  }
+
+  template <class T>
+  [[nodiscard]] Matrix<T, kFrame, kFrame> frame_mass(const Vector<T, kDof>& q,
+                                                     const Matrix<T, kDof, kFrame>& b) const {
+    if constexpr (HasFrameMass<Scene>) {
+      return scene_.frame_mass(q);
+    } else {
+      const Matrix<T, kDof, kFrame> mb = scene_.mass(q) * b;
+      return b.transpose() * mb;
+    }
+  }
+
+  template <class T>
+  [[nodiscard]] T frame_hamiltonian(const Vector<T, kDof>& q,
+                                    const Vector<T, kDof>& p,
+                                    const Vector<T, kFrame>& u) const {
+    const Vector<T, kDof> v = scene_.frame(q) * u;
+    return p.dot(v) - kinetic(q, v) + potential(q);
+  }
+
+  template <class T>
+  [[nodiscard]] T multiplier_hamiltonian(const Vector<T, kDof>& q,
+                                         const Vector<T, kDof>& p,
+                                         const Vector<T, kDof + kMultipliers>& y) const {
+    const Vector<T, kDof> v = y.template head<kDof>();
+    const Vector<T, kMultipliers> gv = scene_.constraints(q) * v;
+    T h = p.dot(v) - kinetic(q, v) + potential(q);
+    for (int i = 0; i < kMultipliers; ++i) h += y[kDof + i] * gv[i];
+    return h;
+  }
+
+  template <class T>
+  [[nodiscard]] RateStatus frame_rate(const Vector<T, kDof>& q,
+                                      const Vector<T, kDof>& p,
+                                      Vector<T, kFrame>& u,
+                                      Rate<T, kDof>& out) const {
+    const Matrix<T, kDof, kFrame> b = scene_.frame(q);
+    const Matrix<T, kFrame, kFrame> reduced = frame_mass(q, b);
+    const Cholesky<T, kFrame> factor(reduced);
+    if (!factor.positive()) return mass_failure(reduced);
+    const Vector<T, kFrame> reduced_p = b.transpose() * p;
+    u = factor.solve(reduced_p);
+    out.q_dot = b * u;
+    if constexpr (HasFrameGradient<Scene>) {
+      out.p_dot = -scene_.frame_gradient(q, p, u);
+    } else {
+      using J = Jet<T, kDof>;
+      const Vector<J, kDof> pj = unseeded<J>(p);
+      const Vector<J, kFrame> uj = unseeded<J>(u);
+      out.p_dot = -gradient([&](const auto& x) { return frame_hamiltonian(x, pj, uj); }, q);
+    }
+    return finite(out);
+  }
+
+  template <class T>
+  [[nodiscard]] RateStatus multiplier_rate(const Vector<T, kDof>& q,
+                                           const Vector<T, kDof>& p,
+                                           Vector<T, kDof + kMultipliers>& y,
+                                           Rate<T, kDof>& out) const {
+    const Matrix<T, kMultipliers, kDof> g = scene_.constraints(q);
+    const Matrix<T, kDof, kDof> a = regular_mass(q, g);
+    const Cholesky<T, kDof> factor(a);
+    if (!factor.positive()) return diagnose(g, a);
+    Vector<T, kDof> v = factor.solve(p);
+    if constexpr (kMultipliers > 0) {
+      Matrix<T, kDof, kMultipliers> w;  // A^-1 G'
+      for (int i = 0; i < kMultipliers; ++i) {
+        const Vector<T, kDof> row = g.row(i).transpose();
+        w.col(i) = factor.solve(row);
+      }
+      const Matrix<T, kMultipliers, kMultipliers> schur = g * w;
+      const Cholesky<T, kMultipliers> schur_factor(schur);
+      if (!schur_factor.positive()) return constraint_failure(g);
+      const Vector<T, kMultipliers> rhs = g * v;
+      const Vector<T, kMultipliers> lambda = -schur_factor.solve(rhs);
+      v += w * lambda;
+      y.template tail<kMultipliers>() = lambda;
+    }
+    y.template head<kDof>() = v;
+    out.q_dot = v;
+    using J = Jet<T, kDof>;
+    const Vector<J, kDof> pj = unseeded<J>(p);
+    const Vector<J, kDof + kMultipliers> yj = unseeded<J>(y);
+    out.p_dot = -gradient([&](const auto& x) { return multiplier_hamiltonian(x, pj, yj); }, q);
+    return finite(out);
+  }
+
+  // Why a factor failed; off the hot path.
+  template <class Derived>
+  static bool all_finite(const Eigen::MatrixBase<Derived>& a) {
+    using std::isfinite;
+    bool finite = true;
+    for (int i = 0; i < a.rows(); ++i) {
+      for (int j = 0; j < a.cols(); ++j) finite = finite && isfinite(value_of(a(i, j)));
+    }
+    return finite;
+  }
+  template <class T, int n>
+  static RateStatus finite(const Rate<T, n>& out) {
+    const bool ok = all_finite(out.q_dot) && all_finite(out.p_dot);
+    return ok ? RateStatus::kOk : RateStatus::kNotFinite;
+  }
+  template <class M>
+  static RateStatus mass_failure(const M& a) {
+    return all_finite(a) ? RateStatus::kMassNotPositive : RateStatus::kNotFinite;
+  }
+  template <class M>
+  static RateStatus constraint_failure(const M& gram) {
+    return all_finite(gram) ? RateStatus::kConstraintRank : RateStatus::kNotFinite;
+  }
+  template <class T>
+  static RateStatus diagnose(const Matrix<T, kMultipliers, kDof>& g,
+                             const Matrix<T, kDof, kDof>& a) {
+    if constexpr (kMultipliers > 0) {
+      const Matrix<T, kMultipliers, kMultipliers> gram = g * g.transpose();
+      if (!Cholesky<T, kMultipliers>(gram).positive()) return constraint_failure(g);
+    }
+    return mass_failure(a);
+  }
+
+  Scene scene_;
+};
+
+}  // namespace carnot
