@@ -14,8 +14,8 @@
 // the 2ns stage equations takes over.
 #pragma once
 
-#include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -23,6 +23,7 @@
 #include "carnot/gauss_tableau.h"
 #include "carnot/gradient.h"
 #include "carnot/index_one_system.h"
+#include "carnot/lu.h"
 
 namespace carnot {
 
@@ -209,32 +210,18 @@ class Gauss {
 
   // Solves U_i - z - e - sum_j mu_ij h b_j f(U_j) = 0 for all stages at once.
   void newton(const T& t, const T& h, const State<T, kDof>& z, StepReport& report) {
-    constexpr int kTotal = kSize * s;
+    using std::isfinite;
     report.newton = true;
-    Matrix<T, kTotal, kTotal> matrix;
-    Stages residual;
     T smallest = std::numeric_limits<T>::max();
-    stages_ = (increments_.lazyProduct(tableau_.mu.transpose())).colwise() + z.value;
+    stages_ = increments_.lazyProduct(tableau_.mu.transpose()).colwise() + z.value;
     for (int iteration = 0; iteration < kMaxNewton; ++iteration) {
-      matrix.setIdentity();
-      for (int j = 0; j < s; ++j) {
-        Matrix<T, kSize, kSize> a;
-        if (!evaluate(t, h, j, report)) return;
-        report.rate = phase_jacobian(
-            system_, T(t + tableau_.c[j] * h), Vector<T, kSize>(stages_.col(j)), algebraic(j), a);
-        for (int i = 0; i < s; ++i) {
-          matrix.template block<kSize, kSize>(i * kSize, j * kSize) -=
-              (tableau_.mu(i, j) * tableau_.b[j] * h) * a;
-        }
-      }
-      residual = (increments_.lazyProduct(tableau_.mu.transpose())).colwise() + z.compensation;
-      residual = (residual.colwise() + z.value) - stages_;
-      const Eigen::PartialPivLU<Matrix<T, kTotal, kTotal>> lu(matrix);
-      const Vector<T, kTotal> correction =
-          lu.solve(Eigen::Map<const Vector<T, kTotal>>(residual.data()));
-      stages_ += Eigen::Map<const Stages>(correction.data());
+      if (!newton_matrix(t, h, report)) return;
+      Stages correction = increments_.lazyProduct(tableau_.mu.transpose());
+      correction.colwise() += z.compensation;
+      correction = (correction.colwise() + z.value) - stages_;
+      if (!lu_solve(kSize * s, newton_matrix_.data(), 1, correction.data())) break;
+      stages_ += correction;
       const T change = correction.cwiseAbs().maxCoeff();
-      using std::isfinite;
       if (!isfinite(change)) break;
       const bool stalled = change >= smallest;
       smallest = std::min(smallest, change);
@@ -248,11 +235,33 @@ class Gauss {
     report.status = StepStatus::kStagesDiverged;
   }
 
+  // I - mu_ij h b_j df/dz(U_j) in blocks, row-major, and the rates at the stages.
+  bool newton_matrix(const T& t, const T& h, StepReport& report) {
+    Matrix<T, kSize, kSize> a;
+    for (int j = 0; j < s; ++j) {
+      if (!evaluate(t, h, j, report)) return false;
+      const Vector<T, kSize> u = stages_.col(j);
+      report.rate = phase_jacobian(system_, T(t + tableau_.c[j] * h), u, algebraic(j), a);
+      for (int i = 0; i < s; ++i) {
+        const T weight = tableau_.mu(i, j) * tableau_.b[j] * h;
+        for (int r = 0; r < kSize; ++r) {
+          for (int c = 0; c < kSize; ++c) {
+            const T identity(i == j && r == c ? 1 : 0);
+            newton_matrix_[(i * kSize + r) * kSize * s + j * kSize + c] =
+                identity - weight * a(r, c);
+          }
+        }
+      }
+    }
+    return true;
+  }
+
   const System& system_;
   const GaussTableau<T, s>& tableau_;
   Stages stages_ = Stages::Zero();
   Stages increments_ = Stages::Zero();
   Matrix<T, System::kAlgebraic, s> algebraic_;
+  std::array<T, kSize * s * kSize * s> newton_matrix_;  // scratch of the fallback
   T start_time_ = T(0);
   T last_step_ = T(0);
 };

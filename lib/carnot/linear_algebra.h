@@ -14,6 +14,32 @@ using Vector = Eigen::Matrix<T, n, 1>;
 template <class T, int rows, int cols>
 using Matrix = Eigen::Matrix<T, rows, cols>;
 
+// Products as plain sums. Eigen's own start from Scalar(0), which nested ceres::Jets do not accept.
+template <class A, class B>
+auto product(const A& a, const B& b) {
+  using T = typename A::Scalar;
+  constexpr int rows = A::RowsAtCompileTime;
+  constexpr int inner = A::ColsAtCompileTime;
+  constexpr int cols = B::ColsAtCompileTime;
+  static_assert(inner == B::RowsAtCompileTime && inner > 0);
+  Matrix<T, rows, cols> c;
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < cols; ++j) {
+      T sum = a(i, 0) * b(0, j);
+      for (int k = 1; k < inner; ++k) sum += a(i, k) * b(k, j);
+      c(i, j) = sum;
+    }
+  }
+  return c;
+}
+
+template <class T, int n>
+T dot(const Vector<T, n>& a, const Vector<T, n>& b) {
+  T sum = a[0] * b[0];
+  for (int i = 1; i < n; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
 // A vector on somebody else's numbers.
 template <int n>
 Eigen::Map<const Vector<double, n>> view(const double* x) {

@@ -47,31 +47,23 @@ template <class Scene, class T>
   return true;
 }
 
-// The discrete momenta of the interval from q0 to q1 of length h with multipliers lambda.
-template <class Scene>
-void midpoint_momenta(const VelocityConstraints<Scene>& system,
+// F_d(q0, q1, lambda) with x = (q0, q1, lambda) stacked, of length 2n + k.
+template <class Scene, class T>
+T discrete_lagrangian(const VelocityConstraints<Scene>& system,
                       double h,
-                      const Vector<double, Scene::kDof>& q0,
-                      const Vector<double, Scene::kDof>& q1,
-                      const Vector<double, Scene::kMultipliers>& lambda,
-                      Vector<double, Scene::kDof>& p0,
-                      Vector<double, Scene::kDof>& p1) {
+                      const Vector<T, 2 * Scene::kDof + Scene::kMultipliers>& x) {
   constexpr int n = Scene::kDof;
-  using J = Jet<double, n>;
-  const Vector<double, n> qm = 0.5 * (q0 + q1);
-  const Vector<double, n> v = (q1 - q0) / h;
-  const Vector<J, n> vj = unseeded<J>(v);
-  const Vector<J, Scene::kMultipliers> lj = unseeded<J>(lambda);
-  const auto augmented = [&](const Vector<J, n>& q) {
-    J f = system.lagrangian(q, vj);
-    const Vector<J, Scene::kMultipliers> g = system.constraint(q, vj);
-    for (int i = 0; i < Scene::kMultipliers; ++i) f -= lj[i] * g[i];
-    return f;
-  };
-  const Vector<double, n> half_force = (0.5 * h) * gradient(augmented, qm);
-  const Vector<double, n> f_v = system.momentum(qm, v, lambda);
-  p0 = f_v - half_force;
-  p1 = f_v + half_force;
+  constexpr int k = Scene::kMultipliers;
+  const Vector<T, n> q0 = x.template head<n>();
+  const Vector<T, n> q1 = x.template segment<n>(n);
+  const T half = constant<T>(0.5);
+  const T rate = constant<T>(1 / h);
+  const Vector<T, n> qm = half * (q0 + q1);
+  const Vector<T, n> v = rate * (q1 - q0);
+  T f = system.lagrangian(qm, v);
+  const Vector<T, k> g = system.constraint(qm, v);
+  for (int i = 0; i < k; ++i) f -= x[2 * n + i] * g[i];
+  return constant<T>(h) * f;
 }
 
 }  // namespace carnot

@@ -36,7 +36,8 @@ struct FlowSummary {
 using Progress = std::function<bool(double fraction)>;
 
 struct AuditOptions {
-  long samples = 0;  // times recorded in `trajectory`
+  long samples = 0;           // equidistant times recorded in `trajectory`
+  std::vector<double> times;  // recorded instead, where given; ascending, within the plan
   Progress progress;
 };
 
@@ -82,14 +83,11 @@ struct Segment {
       const double* qm, const double* v, double* terms, double* jacobian) const {
     return calls.midpoint(system.get(), qm, v, terms, jacobian);
   }
-  // Discrete momenta at both ends of an interval of length h.
-  void midpoint_momenta(double h,
-                        const double* q0,
-                        const double* q1,
-                        const double* lambda,
-                        double* p0,
-                        double* p1) const {
-    calls.midpoint_momenta(system.get(), h, q0, q1, lambda, p0, p1);
+  // Gradient and Hessian of the discrete Lagrangian F_d with respect to x = (q0, q1, lambda), of
+  // length 2n + k: the discrete momenta are p0 = -gradient[0..n), p1 = gradient[n..2n). The Hessian
+  // (symmetric, (2n + k)^2) may be null.
+  void discrete_lagrangian(double h, const double* x, double* gradient, double* hessian) const {
+    calls.discrete_lagrangian(system.get(), h, x, gradient, hessian);
   }
 
   struct Calls {
@@ -99,8 +97,7 @@ struct Segment {
     PointValues (*evaluate)(const void*, double, const double*, const double*, double*, double*);
     double (*momentum)(const void*, const double*, double*, const double*, double*);
     bool (*midpoint)(const void*, const double*, const double*, double*, double*);
-    void (*midpoint_momenta)(
-        const void*, double, const double*, const double*, const double*, double*, double*);
+    void (*discrete_lagrangian)(const void*, double, const double*, double*, double*);
   };
   Calls calls{};
 };
@@ -151,7 +148,11 @@ FlowSummary audited_flow(const void* opaque,
   Step stepper(system);
   auto state = load<Step>(z);
   Audit<Step> audit(system, plan.start, state);
-  Recorder<Step> recorder(system, plan, options.samples, state);
+  Recorder<Step> recorder(
+      system,
+      plan,
+      options.times.empty() ? sample_times(plan, options.samples) : options.times,
+      state);
   FlowSummary summary;
   summary.report =
       carnot::flow(stepper, plan, state, [&](long i, const Step& step, const auto& node) {
@@ -169,16 +170,15 @@ FlowSummary audited_flow(const void* opaque,
   return summary;
 }
 
-template <class Step>
+template <class System>
 PointValues evaluate(const void* opaque,
                      double t,
                      const double* q_in,
                      const double* p_in,
                      double* q_dot,
                      double* lambda_out) {
-  using System = typename Step::System;
   using Q = Vector<double, System::kDof>;
-  const auto& system = cast<Step>(opaque);
+  const auto& system = *static_cast<const System*>(opaque);
   const Q q = view<System::kDof>(q_in);
   const Q p = view<System::kDof>(p_in);
   Vector<double, System::kAlgebraic> y = Vector<double, System::kAlgebraic>::Zero();
@@ -194,13 +194,12 @@ PointValues evaluate(const void* opaque,
   return values;
 }
 
-template <class Step>
+template <class System>
 double momentum(
     const void* opaque, const double* q_in, double* q_dot, const double* lambda, double* p) {
-  using System = typename Step::System;
   using Q = Vector<double, System::kDof>;
   using K = Vector<double, System::kMultipliers>;
-  const auto& system = cast<Step>(opaque);
+  const auto& system = *static_cast<const System*>(opaque);
   const Q q = view<System::kDof>(q_in);
   Q v = view<System::kDof>(q_dot);
   const double size = v.norm();
@@ -212,13 +211,12 @@ double momentum(
   return size > 0 ? violated / size : 0;
 }
 
-template <class Step>
+template <class System>
 bool midpoint(
     const void* opaque, const double* qm_in, const double* v_in, double* terms, double* jacobian) {
-  using System = typename Step::System;
   constexpr int n = System::kDof;
   constexpr int k = System::kMultipliers;
-  const auto& system = cast<Step>(opaque);
+  const auto& system = *static_cast<const System*>(opaque);
   const Vector<double, n> qm = view<n>(qm_in);
   const Vector<double, n> v = view<n>(v_in);
   if (jacobian == nullptr) {
@@ -248,28 +246,22 @@ bool midpoint(
   return true;
 }
 
-template <class Step>
-void midpoint_momenta(const void* opaque,
-                      double h,
-                      const double* q0,
-                      const double* q1,
-                      const double* lambda,
-                      double* p0,
-                      double* p1) {
-  using System = typename Step::System;
-  using Q = Vector<double, System::kDof>;
-  using K = Vector<double, System::kMultipliers>;
-  Q start;
-  Q end;
-  carnot::midpoint_momenta(cast<Step>(opaque),
-                           h,
-                           Q(view<System::kDof>(q0)),
-                           Q(view<System::kDof>(q1)),
-                           K(view<System::kMultipliers>(lambda)),
-                           start,
-                           end);
-  view<System::kDof>(p0) = start;
-  view<System::kDof>(p1) = end;
+template <class System>
+void discrete_lagrangian(
+    const void* opaque, double h, const double* x_in, double* gradient_out, double* hessian) {
+  constexpr int m = 2 * System::kDof + System::kMultipliers;
+  const auto& system = *static_cast<const System*>(opaque);
+  const auto f = [&](const auto& x) { return carnot::discrete_lagrangian(system, h, x); };
+  const Vector<double, m> x = view<m>(x_in);
+  if (hessian == nullptr) {
+    view<m>(gradient_out) = gradient(f, x);
+    return;
+  }
+  const Vector<Jet<double, m>, m> derivative = gradient(f, seeded(x));
+  for (int i = 0; i < m; ++i) {
+    gradient_out[i] = derivative[i].a;
+    view<m>(hessian + i * m) = derivative[i].v;
+  }
 }
 
 }  // namespace segment_calls
@@ -290,10 +282,10 @@ Segment make_gauss_segment(const Scene& scene) {
   segment.calls = {segment_calls::flow<Step>,
                    segment_calls::tangent_flow<Step>,
                    segment_calls::audited_flow<Step>,
-                   segment_calls::evaluate<Step>,
-                   segment_calls::momentum<Step>,
-                   segment_calls::midpoint<Step>,
-                   segment_calls::midpoint_momenta<Step>};
+                   segment_calls::evaluate<System>,
+                   segment_calls::momentum<System>,
+                   segment_calls::midpoint<System>,
+                   segment_calls::discrete_lagrangian<System>};
   return segment;
 }
 

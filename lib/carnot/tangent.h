@@ -72,24 +72,32 @@ class Tangent {
   // (I - h b_i A_i mu_ij) dL = h b_i A_i dz, all stages at once.
   bool solve(const Step& step, const Compensated<Square>& m) {
     constexpr int kTotal = kSize * kStages;
-    Matrix<T, kTotal, kTotal> matrix;
-    Matrix<T, kTotal, kSize> rhs;
+    using RowMajor = Eigen::Matrix<T, kSize, kSize, Eigen::RowMajor>;
+    bool finite = true;
     for (int i = 0; i < kStages; ++i) {
-      rhs.template middleRows<kSize>(i * kSize).noalias() = jacobian_[i] * m.value;
+      Eigen::Map<RowMajor> rhs(rhs_.data() + i * kSize * kSize);
+      rhs = jacobian_[i].lazyProduct(m.value);
       for (int j = 0; j < kStages; ++j) {
-        matrix.template block<kSize, kSize>(i * kSize, j * kSize) =
-            -step.tableau().mu(i, j) * jacobian_[i];
+        for (int r = 0; r < kSize; ++r) {
+          for (int c = 0; c < kSize; ++c) {
+            const T identity(i == j && r == c ? 1 : 0);
+            matrix_[(i * kSize + r) * kTotal + j * kSize + c] =
+                identity - step.tableau().mu(i, j) * jacobian_[i](r, c);
+          }
+        }
       }
     }
-    matrix.diagonal().array() += T(1);
-    const Eigen::PartialPivLU<Matrix<T, kTotal, kTotal>> lu(matrix);
-    Matrix<T, kTotal, kSize> solution = lu.solve(rhs);
-    solution += lu.solve(Matrix<T, kTotal, kSize>(rhs - matrix * solution));  // to full precision
+    if (!lu_solve(kTotal, matrix_.data(), kSize, rhs_.data())) return false;
     for (int i = 0; i < kStages; ++i) {
-      increment_[i] = solution.template middleRows<kSize>(i * kSize);
+      increment_[i] = Eigen::Map<const RowMajor>(rhs_.data() + i * kSize * kSize);
+      finite = finite && increment_[i].allFinite();
     }
-    return solution.allFinite();
+    return finite;
   }
+
+  // Scratch of the fallback.
+  std::array<T, kSize * kStages * kSize * kStages> matrix_;
+  std::array<T, kSize * kStages * kSize> rhs_;
 
   std::array<Square, kStages> jacobian_;
   std::array<Square, kStages> increment_;

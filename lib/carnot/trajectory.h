@@ -1,6 +1,9 @@
 // An extremal at chosen times, as plain numbers for output and plots.
 #pragma once
 
+#include <cmath>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include "carnot/flow.h"
@@ -16,8 +19,20 @@ struct Trajectory {
   std::vector<double> hamiltonian;
 };
 
-// Observer of flow() that records `samples` equidistant times of the plan, ends included. A sample
-// between nodes is a shortened full-order step from the node before; the run itself is not touched.
+// `samples` equidistant times of the plan, ends included.
+inline std::vector<double> sample_times(const StepPlan& plan, long samples) {
+  std::vector<double> times;
+  for (long i = 0; i + 1 < samples; ++i) {
+    const double fraction = static_cast<double>(i) / static_cast<double>(samples - 1);
+    times.push_back(plan.start + fraction * (plan.end - plan.start));
+  }
+  if (samples > 0) times.push_back(plan.end);
+  return times;
+}
+
+// Observer of flow() that records the state at given times of the plan, in its direction. A time
+// between nodes is reached by a shortened full-order step from the node before; the run itself is
+// not touched.
 template <class Stepper>
 class Recorder {
  public:
@@ -25,18 +40,24 @@ class Recorder {
   static constexpr int n = Stepper::kDof;
   static constexpr int k = System::kMultipliers;
 
-  Recorder(const System& system, const StepPlan& plan, long samples, const State<double, n>& z)
-      : system_(system), plan_(plan), samples_(samples), node_(z) {
-    if (samples_ > 0) record(plan.start, z);
+  Recorder(const System& system,
+           const StepPlan& plan,
+           std::vector<double> times,
+           const State<double, n>& z)
+      : system_(system), plan_(plan), times_(std::move(times)), node_(z) {
+    const double tolerance = kNodeTolerance * std::abs(plan.length(0));
+    if (!times_.empty() && std::abs(times_[0] - plan.start) <= tolerance) record(times_[0], z);
   }
+  Recorder(const System& system, const StepPlan& plan, long samples, const State<double, n>& z)
+      : Recorder(system, plan, sample_times(plan, samples), z) {}
 
   void operator()(long i, const State<double, n>& z) {
     const double from = plan_.time(i);
     const double to = plan_.time(i + 1);
-    const double tolerance = kNodeTolerance * (to - from);
-    while (next() < samples_ && std::abs(time(next()) - from) < std::abs(to - from) + tolerance) {
-      const double t = time(next());
-      if (std::abs(t - to) <= std::abs(tolerance)) {
+    const double tolerance = kNodeTolerance * std::abs(to - from);
+    while (next() < times_.size() && std::abs(times_[next()] - from) <= std::abs(to - from) + tolerance) {
+      const double t = times_[next()];
+      if (std::abs(t - to) <= tolerance) {
         record(t, z);
         continue;
       }
@@ -53,11 +74,7 @@ class Recorder {
  private:
   static constexpr double kNodeTolerance = 1e-9;  // of a step: nearer than this is the node
 
-  [[nodiscard]] long next() const { return static_cast<long>(trajectory_.t.size()); }
-  [[nodiscard]] double time(long i) const {
-    const double fraction = static_cast<double>(i) / static_cast<double>(samples_ - 1);
-    return i == samples_ - 1 ? plan_.end : plan_.start + fraction * (plan_.end - plan_.start);
-  }
+  [[nodiscard]] std::size_t next() const { return trajectory_.t.size(); }
 
   void record(double t, const State<double, n>& z) {
     const Vector<double, n> q = z.value.template head<n>();
@@ -77,7 +94,7 @@ class Recorder {
 
   const System& system_;
   StepPlan plan_;
-  long samples_;
+  std::vector<double> times_;
   State<double, n> node_;
   Trajectory trajectory_;
 };

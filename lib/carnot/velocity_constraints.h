@@ -125,7 +125,11 @@ class VelocityConstraints {
   template <class T>
   [[nodiscard]] Vector<T, kMultipliers> constraint(const Vector<T, kDof>& q,
                                                    const Vector<T, kDof>& v) const {
-    return scene_.constraints(q) * v;
+    if constexpr (kMultipliers == 0) {
+      return {};
+    } else {
+      return product(scene_.constraints(q), v);
+    }
   }
 
   // sqrt(v'M v), the integrand of the length.
@@ -150,11 +154,11 @@ class VelocityConstraints {
                                        Vector<T, kMultipliers>& lambda) const {
     if constexpr (kMultipliers > 0) {
       const Matrix<T, kMultipliers, kDof> g = scene_.constraints(q);
-      const Matrix<T, kMultipliers, kMultipliers> gram = g * g.transpose();
+      const Matrix<T, kMultipliers, kMultipliers> gram = product(g, g.transpose());
       const Cholesky<T, kMultipliers> factor(gram);
       if (!factor.positive()) return constraint_failure(gram);
-      const Vector<T, kDof> excess = scene_.mass(q) * v - p;
-      const Vector<T, kMultipliers> rhs = g * excess;
+      const Vector<T, kDof> excess = product(scene_.mass(q), v) - p;
+      const Vector<T, kMultipliers> rhs = product(g, excess);
       lambda = factor.solve(rhs);
     }
     return RateStatus::kOk;
@@ -165,7 +169,9 @@ class VelocityConstraints {
   [[nodiscard]] Vector<T, kDof> momentum(const Vector<T, kDof>& q,
                                          const Vector<T, kDof>& v,
                                          const Vector<T, kMultipliers>& lambda) const {
-    return scene_.mass(q) * v - scene_.constraints(q).transpose() * lambda;
+    Vector<T, kDof> p = product(scene_.mass(q), v);
+    if constexpr (kMultipliers > 0) p -= product(scene_.constraints(q).transpose(), lambda);
+    return p;
   }
 
   // The velocity in ker G nearest to v in the Euclidean norm.
@@ -177,15 +183,17 @@ class VelocityConstraints {
     const Vector<T, kDof> minus_v = -v;
     Vector<T, kMultipliers> lambda;
     const RateStatus status = multipliers(q, minus_v, zero, lambda);
-    if (status == RateStatus::kOk) v -= scene_.constraints(q).transpose() * lambda;
+    if constexpr (kMultipliers > 0) {
+      if (status == RateStatus::kOk) v -= product(scene_.constraints(q).transpose(), lambda);
+    }
     return status;
   }
 
  private:
   template <class T>
   [[nodiscard]] T kinetic(const Vector<T, kDof>& q, const Vector<T, kDof>& v) const {
-    const Vector<T, kDof> mv = scene_.mass(q) * v;
-    return constant<T>(0.5) * v.dot(mv);
+    const Vector<T, kDof> mv = product(scene_.mass(q), v);
+    return constant<T>(0.5) * dot(v, mv);
   }
 
   template <class T>
@@ -193,8 +201,14 @@ class VelocityConstraints {
                                                    const Matrix<T, kMultipliers, kDof>& g) const {
     Matrix<T, kDof, kDof> a = scene_.mass(q);
     if constexpr (kMultipliers > 0) {
-      const T gamma = a.diagonal().sum() / g.array().square().sum();
-      a += gamma * (g.transpose() * g);
+      const Matrix<T, kDof, kDof> square = product(g.transpose(), g);
+      T mass_trace = a(0, 0);
+      T square_trace = square(0, 0);
+      for (int i = 1; i < kDof; ++i) {
+        mass_trace += a(i, i);
+        square_trace += square(i, i);
+      }
+      a += (mass_trace / square_trace) * square;
     }
     return a;
   }
@@ -205,8 +219,8 @@ class VelocityConstraints {
     if constexpr (HasFrameMass<Scene>) {
       return scene_.frame_mass(q);
     } else {
-      const Matrix<T, kDof, kFrame> mb = scene_.mass(q) * b;
-      return b.transpose() * mb;
+      const Matrix<T, kDof, kFrame> mb = product(scene_.mass(q), b);
+      return product(b.transpose(), mb);
     }
   }
 
@@ -214,8 +228,8 @@ class VelocityConstraints {
   [[nodiscard]] T frame_hamiltonian(const Vector<T, kDof>& q,
                                     const Vector<T, kDof>& p,
                                     const Vector<T, kFrame>& u) const {
-    const Vector<T, kDof> v = scene_.frame(q) * u;
-    return p.dot(v) - kinetic(q, v) + potential(q);
+    const Vector<T, kDof> v = product(scene_.frame(q), u);
+    return dot(p, v) - kinetic(q, v) + potential(q);
   }
 
   template <class T>
@@ -223,8 +237,8 @@ class VelocityConstraints {
                                          const Vector<T, kDof>& p,
                                          const Vector<T, kDof + kMultipliers>& y) const {
     const Vector<T, kDof> v = y.template head<kDof>();
-    const Vector<T, kMultipliers> gv = scene_.constraints(q) * v;
-    T h = p.dot(v) - kinetic(q, v) + potential(q);
+    const Vector<T, kMultipliers> gv = constraint(q, v);
+    T h = dot(p, v) - kinetic(q, v) + potential(q);
     for (int i = 0; i < kMultipliers; ++i) h += y[kDof + i] * gv[i];
     return h;
   }
@@ -238,9 +252,9 @@ class VelocityConstraints {
     const Matrix<T, kFrame, kFrame> reduced = frame_mass(q, b);
     const Cholesky<T, kFrame> factor(reduced);
     if (!factor.positive()) return mass_failure(reduced);
-    const Vector<T, kFrame> reduced_p = b.transpose() * p;
+    const Vector<T, kFrame> reduced_p = product(b.transpose(), p);
     u = factor.solve(reduced_p);
-    out.q_dot = b * u;
+    out.q_dot = product(b, u);
     if constexpr (HasFrameGradient<Scene>) {
       out.p_dot = -scene_.frame_gradient(q, p, u);
     } else {
@@ -268,12 +282,12 @@ class VelocityConstraints {
         const Vector<T, kDof> row = g.row(i).transpose();
         w.col(i) = factor.solve(row);
       }
-      const Matrix<T, kMultipliers, kMultipliers> schur = g * w;
+      const Matrix<T, kMultipliers, kMultipliers> schur = product(g, w);
       const Cholesky<T, kMultipliers> schur_factor(schur);
       if (!schur_factor.positive()) return constraint_failure(g);
-      const Vector<T, kMultipliers> rhs = g * v;
+      const Vector<T, kMultipliers> rhs = product(g, v);
       const Vector<T, kMultipliers> lambda = -schur_factor.solve(rhs);
-      v += w * lambda;
+      v += product(w, lambda);
       y.template tail<kMultipliers>() = lambda;
     }
     y.template head<kDof>() = v;
@@ -312,7 +326,7 @@ class VelocityConstraints {
   static RateStatus diagnose(const Matrix<T, kMultipliers, kDof>& g,
                              const Matrix<T, kDof, kDof>& a) {
     if constexpr (kMultipliers > 0) {
-      const Matrix<T, kMultipliers, kMultipliers> gram = g * g.transpose();
+      const Matrix<T, kMultipliers, kMultipliers> gram = product(g, g.transpose());
       if (!Cholesky<T, kMultipliers>(gram).positive()) return constraint_failure(g);
     }
     return mass_failure(a);

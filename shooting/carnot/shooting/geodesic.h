@@ -32,11 +32,11 @@ struct Geodesic {
   double knot_defect = 0;     // max-norm of flow(z_i) - z_{i+1}, for kKnots
   double constraint_error = 0;
   double energy_drift = 0;
-  std::vector<double> conjugate_times;  // in (0, T], repeated by multiplicity
+  std::optional<std::vector<double>> conjugate_times;  // in (0, T], by multiplicity; if known
   Label label = Label::kUnknown;
-  bool abnormal = false;
-  int morse_index = 0;
-  int family_dimension = 0;
+  std::optional<bool> abnormal;  // if known
+  std::optional<int> morse_index;
+  std::optional<int> family_dimension;
   std::vector<std::pair<std::string, double>> extremes;  // e.g. largest_steering_angle
   StepPlan plan;                                         // steps of the verified integration
   Trajectory trajectory;

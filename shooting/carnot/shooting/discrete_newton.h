@@ -1,0 +1,33 @@
+// Newton's method on the midpoint transcription: from a nearly tight path to a discrete extremal.
+//
+// A path with multipliers is a discrete extremal when, with F_d of midpoint_transcription.h,
+//
+//   D2 F_d(q_{i-1}, q_i, lambda_{i-1}) + D1 F_d(q_i, q_{i+1}, lambda_i) = 0,   D3 F_d = 0,
+//
+// which is the midpoint rule with momenta that match at every node. The Jacobian holds the exact
+// second derivatives; ordered lambda_0, q_1, lambda_1, q_2, ..., it is banded. Steps are halved
+// while the residual does not fall. Minimisers and saddles attract alike.
+#pragma once
+
+#include "carnot/shooting/boundary_value_problem.h"
+#include "carnot/shooting/path.h"
+
+namespace carnot {
+
+struct DiscreteNewtonOptions {
+  int max_iterations = 20;
+  double tolerance = 1e-9;  // residual relative to its size at the first iterate's momenta
+};
+
+struct DiscreteNewton {
+  bool converged = false;
+  double residual = 0;
+  int iterations = 0;
+};
+
+// Improves q and lambda of `path` and refills its momenta. The ends stay fixed.
+DiscreteNewton tighten(const BoundaryValueProblem& problem,
+                       const DiscreteNewtonOptions& options,
+                       Path& path);
+
+}  // namespace carnot

@@ -1,0 +1,285 @@
+#include "carnot/shooting/geodesic.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include "carnot/shooting/discrete_newton.h"
+#include "carnot/shooting/multiple_shooting.h"
+#include "carnot/shooting/parallel.h"
+#include "carnot/shooting/starts.h"
+#include "carnot/shooting/symmetry.h"
+#include "carnot/shooting/verification.h"
+
+namespace carnot {
+namespace {
+
+constexpr int kSegments = 8;       // of multiple shooting; divides the intervals of a path
+constexpr long kFirstSteps = 32;   // of the method over [0, T]
+constexpr int kRound = 12;         // starts between two looks at the list
+constexpr int kMaxStarts = 96;     // when the best extremal keeps changing
+constexpr int kMaxStartsAll = 480;
+constexpr int kEnoughHits = 3;     // of the least action, before a search for it ends
+constexpr double kSameAction = 1e-9;
+
+// A relaxed path that satisfies the discrete equations, or why there is none.
+struct Candidate {
+  bool found = false;
+  Path path;
+};
+
+// The growing list of distinct extremals.
+class Search {
+ public:
+  Search(const BoundaryValueProblem& problem, const GeodesicOptions& options)
+      : problem_(problem),
+        options_(options),
+        threads_(thread_count(options.threads)),
+        symmetries_(symmetries_of(problem)) {}
+
+  // Runs rounds of starts until the list is good enough. False when interrupted.
+  bool run() {
+    const int limit = options_.starts > 0 ? options_.starts
+                                          : (wants_all() ? kMaxStartsAll : kMaxStarts);
+    while (starts_ < limit && !settled()) {
+      if (options_.progress && !options_.progress(static_cast<double>(starts_) / limit)) {
+        return false;
+      }
+      round(std::min(kRound, limit - starts_));
+    }
+    return true;
+  }
+
+  // Polishes one guess of p0 instead.
+  void polish_guess() {
+    starts_ = 1;
+    for (const int segments : {kSegments, 1}) {
+      add(polish(knots_of(problem_, options_.guess, segments, kFirstSteps)));
+      if (!extremals_.empty()) break;
+    }
+    converged_ = extremals_.empty() ? 0 : 1;
+  }
+
+  [[nodiscard]] std::vector<Extremal> ranked() const {
+    std::vector<std::size_t> order(extremals_.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return extremals_[a].geodesic.action < extremals_[b].geodesic.action;
+    });
+    std::vector<Extremal> list;
+    for (const std::size_t i : order) {
+      if (extremals_[i].geodesic.length.value_or(0) <= options_.max_length) {
+        list.push_back(extremals_[i]);
+      }
+    }
+    return list;
+  }
+  [[nodiscard]] int starts() const { return starts_; }
+  [[nodiscard]] int converged() const { return converged_; }
+  [[nodiscard]] bool any_discrete() const { return !discrete_.empty(); }
+
+ private:
+  [[nodiscard]] bool wants_all() const { return options_.all || options_.count > 1; }
+
+  // The search for one geodesic ends when the least action has been hit often enough; a search for
+  // more goes on to the limit.
+  [[nodiscard]] bool settled() const {
+    if (options_.starts > 0 || wants_all() || extremals_.empty()) return false;
+    double least = std::numeric_limits<double>::infinity();
+    for (const Extremal& extremal : extremals_) least = std::min(least, extremal.geodesic.action);
+    int hits = 0;
+    for (std::size_t i = 0; i < extremals_.size(); ++i) {
+      // Mirror partners have the same action and count together.
+      const double above = extremals_[i].geodesic.action - least;
+      if (above <= kSameAction * std::abs(least)) hits += hits_[i];
+    }
+    return hits >= kEnoughHits;
+  }
+
+  void round(int count) {
+    std::vector<Candidate> candidates(count);
+    parallel_for(count, threads_, [&](int i) { candidates[i] = relax_start(starts_ + i); });
+    starts_ += count;
+    // In the order of the starts, so that the list does not depend on the threads.
+    std::vector<const Path*> fresh;
+    std::vector<std::size_t> fresh_index;
+    for (const Candidate& candidate : candidates) {
+      if (!candidate.found) continue;
+      const std::size_t known = find_discrete(candidate.path);
+      if (known < discrete_.size()) {
+        if (extremal_of_[known] >= 0) ++hits_[extremal_of_[known]], ++converged_;
+        if (extremal_of_[known] == kPending) ++pending_hits_[known];
+        continue;
+      }
+      discrete_.push_back(candidate.path);
+      extremal_of_.push_back(kPending);
+      pending_hits_.push_back(1);
+      fresh.push_back(&candidate.path);
+      fresh_index.push_back(known);
+    }
+    std::vector<std::optional<Extremal>> polished(fresh.size());
+    parallel_for(static_cast<int>(fresh.size()), threads_, [&](int i) {
+      polished[i] = polish(knots_of(*fresh[i], kSegments));
+    });
+    for (std::size_t i = 0; i < fresh.size(); ++i) {
+      const int index = add(polished[i]);
+      extremal_of_[fresh_index[i]] = index;
+      if (index < 0) continue;
+      hits_[index] += pending_hits_[fresh_index[i]];
+      converged_ += pending_hits_[fresh_index[i]];
+    }
+  }
+
+  [[nodiscard]] Candidate relax_start(int i) const {
+    Start start = make_start(problem_, options_.seed, i);
+    Candidate candidate;
+    relax(problem_, start.relaxation, start.path);
+    candidate.found = tighten(problem_, {}, start.path).converged;
+    candidate.path = std::move(start.path);
+    return candidate;
+  }
+
+  [[nodiscard]] std::optional<Extremal> polish(Knots knots) const {
+    ShootingOptions shooting;
+    shooting.minimiser = options_.minimiser;
+    shooting.steps = kFirstSteps;
+    if (!shoot(problem_, shooting, knots).converged) return std::nullopt;
+    return verify(problem_, std::move(knots), kFirstSteps, options_.tolerance);
+  }
+
+  // Adds what is new, and its mirror partners. Returns the index in the list, or -1.
+  int add(const std::optional<Extremal>& extremal) {
+    if (!extremal) return kNone;
+    for (std::size_t i = 0; i < extremals_.size(); ++i) {
+      if (same(extremals_[i], *extremal)) return static_cast<int>(i);
+    }
+    const int index = static_cast<int>(extremals_.size());
+    extremals_.push_back(*extremal);
+    hits_.push_back(0);
+    for (const ProblemSymmetry& symmetry : symmetries_) {
+      const Knots image = partner(problem_.segment.info, symmetry, extremal->knots);
+      add(verify(problem_, image, kFirstSteps, options_.tolerance));
+    }
+    return index;
+  }
+
+  // Index of a discrete extremal with the same nodes; discrete_.size() when it is new.
+  [[nodiscard]] std::size_t find_discrete(const Path& path) const {
+    constexpr double kSame = 1e-6;
+    for (std::size_t i = 0; i < discrete_.size(); ++i) {
+      double apart = 0;
+      double extent = 0;
+      for (std::size_t j = 0; j < path.q.size(); ++j) {
+        apart = std::max(apart, std::abs(path.q[j] - discrete_[i].q[j]));
+        extent = std::max(extent, std::abs(path.q[j] - path.q[j % path.dof]));
+      }
+      if (apart <= kSame * extent) return i;
+    }
+    return discrete_.size();
+  }
+
+  static constexpr int kNone = -1;
+  static constexpr int kPending = -2;
+
+  const BoundaryValueProblem& problem_;
+  const GeodesicOptions& options_;
+  int threads_;
+  std::vector<ProblemSymmetry> symmetries_;
+  std::vector<Extremal> extremals_;
+  std::vector<int> hits_;
+  std::vector<Path> discrete_;     // discrete extremals seen,
+  std::vector<int> extremal_of_;   // the extremal each became, kNone or kPending,
+  std::vector<int> pending_hits_;  // and how often it was seen before that was known
+  int starts_ = 0;
+  int converged_ = 0;
+};
+
+// from = to: the path that does not move.
+Extremal constant_path(const BoundaryValueProblem& problem) {
+  Extremal extremal;
+  extremal.knots = knots_of(
+      problem, std::vector<double>(problem.segment.dof, 0.0), 1, kFirstSteps);
+  extremal.geodesic.p0.assign(problem.segment.dof, 0.0);
+  extremal.geodesic.lambda0.assign(problem.segment.multipliers, 0.0);
+  extremal.geodesic.length = 0;
+  extremal.geodesic.plan = StepPlan::equal(0, problem.time, kFirstSteps);
+  return extremal;
+}
+
+std::string failure_message(const Search& search, const GeodesicOptions& options) {
+  const std::string tried = std::to_string(search.starts()) +
+                            (search.starts() == 1 ? " start" : " starts") + " tried";
+  if (!options.guess.empty()) {
+    return "the guess did not lead to an extremal: leave --guess out to search from paths";
+  }
+  if (!search.any_discrete()) {
+    return "no path relaxed to a discrete extremal (" + tried +
+           "): try more --starts, another --seed, or a target less far away";
+  }
+  return "discrete extremals were found but none could be verified (" + tried +
+         "): try a larger --tolerance or more --starts";
+}
+
+}  // namespace
+
+void GeodesicOptions::validate(const BoundaryValueProblem& problem) const {
+  const auto require = [](bool ok, const std::string& what) {
+    if (!ok) throw std::invalid_argument(what);
+  };
+  require(count >= 1, "count is " + std::to_string(count) + ", must be >= 1");
+  require(starts >= 0, "starts is " + std::to_string(starts) + ", must be >= 0");
+  require(threads >= 0, "threads is " + std::to_string(threads) + ", must be >= 0");
+  require(samples >= 0, "samples is " + std::to_string(samples) + ", must be >= 0");
+  require(tolerance > 0 && std::isfinite(tolerance),
+          "tolerance is " + std::to_string(tolerance) + ", must be > 0");
+  require(max_length > 0, "max_length is " + std::to_string(max_length) + ", must be > 0");
+  const std::vector<std::string> known = minimisers();
+  require(std::find(known.begin(), known.end(), minimiser) != known.end(),
+          "minimiser " + minimiser + " is unknown");
+  require(guess.empty() || static_cast<int>(guess.size()) == problem.segment.dof,
+          "guess has " + std::to_string(guess.size()) + " components, the scene has " +
+              std::to_string(problem.segment.dof));
+}
+
+GeodesicReport find_geodesics(const BoundaryValueProblem& problem,
+                              const GeodesicOptions& options) {
+  problem.validate();
+  options.validate(problem);
+  const auto began = std::chrono::steady_clock::now();
+  GeodesicReport report;
+  Search search(problem, options);
+  std::vector<Extremal> list;
+  bool finished = true;
+  if (problem.from == problem.to) {
+    list.push_back(constant_path(problem));
+  } else {
+    if (options.guess.empty()) {
+      finished = search.run();
+    } else {
+      search.polish_guess();
+    }
+    list = search.ranked();
+  }
+  if (!options.all && list.size() > static_cast<std::size_t>(options.count)) {
+    list.resize(options.count);
+  }
+  parallel_for(static_cast<int>(list.size()), thread_count(options.threads), [&](int i) {
+    complete(problem, options.samples, list[i]);
+  });
+  for (Extremal& extremal : list) report.geodesics.push_back(std::move(extremal.geodesic));
+  report.starts = search.starts();
+  report.converged_starts = search.converged();
+  report.status = list.empty() ? GeodesicStatus::kNotConverged : GeodesicStatus::kConverged;
+  if (list.empty()) report.message = failure_message(search, options);
+  if (!finished) {
+    report.status = GeodesicStatus::kInterrupted;
+    report.message = "interrupted";
+  }
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - began;
+  report.elapsed_seconds = elapsed.count();
+  return report;
+}
+
+}  // namespace carnot

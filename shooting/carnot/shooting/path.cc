@@ -1,0 +1,30 @@
+#include "carnot/shooting/path.h"
+
+#include <algorithm>
+
+namespace carnot {
+
+void fill_momenta(const Segment& segment, double h, Path& path) {
+  const int n = segment.dof;
+  const int k = segment.multipliers;
+  path.p.assign(path.q.size(), 0);
+  std::vector<double> x(2 * n + k);
+  std::vector<double> gradient(2 * n + k);
+  for (int i = 0; i < path.intervals; ++i) {
+    path.gather(i, k, x.data());
+    segment.discrete_lagrangian(h, x.data(), gradient.data(), nullptr);
+    const double at_left = i == 0 ? 1 : 0.5;
+    const double at_right = i + 1 == path.intervals ? 1 : 0.5;
+    for (int j = 0; j < n; ++j) {
+      path.p[i * n + j] -= at_left * gradient[j];
+      path.p[(i + 1) * n + j] += at_right * gradient[n + j];
+    }
+  }
+}
+
+void Path::gather(int i, int multipliers, double* x) const {
+  std::copy(configuration(i), configuration(i) + 2 * dof, x);
+  std::copy(lambda.data() + i * multipliers, lambda.data() + (i + 1) * multipliers, x + 2 * dof);
+}
+
+}  // namespace carnot

@@ -1,0 +1,29 @@
+// A discrete path on equidistant times, with what the midpoint transcription knows of it.
+#pragma once
+
+#include <vector>
+
+#include "carnot/segment.h"
+
+namespace carnot {
+
+// Nodes i = 0..intervals at times i T / intervals; row-major arrays.
+struct Path {
+  int intervals = 0;
+  int dof = 0;
+  std::vector<double> q;  // (intervals + 1) x n
+  std::vector<double> lambda;  // intervals x k, of the midpoint rule
+  std::vector<double> p;       // (intervals + 1) x n, discrete momenta; filled by a relaxation
+
+  [[nodiscard]] const double* configuration(int i) const { return q.data() + i * dof; }
+  [[nodiscard]] double* configuration(int i) { return q.data() + i * dof; }
+  // (q_i, q_{i+1}, lambda_i), the arguments of the discrete Lagrangian of interval i.
+  void gather(int i, int multipliers, double* x) const;
+  [[nodiscard]] const double* momentum(int i) const { return p.data() + i * dof; }
+};
+
+// Sets path.p from path.q and path.lambda: at each node the mean of what the intervals on both sides
+// say, D2 F_d and -D1 F_d. They agree on a discrete extremal.
+void fill_momenta(const Segment& segment, double h, Path& path);
+
+}  // namespace carnot

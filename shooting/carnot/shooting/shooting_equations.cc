@@ -1,0 +1,58 @@
+#include "carnot/shooting/shooting_equations.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace carnot {
+
+ShootingEquations::ShootingEquations(const BoundaryValueProblem& problem,
+                                     const Knots& knots,
+                                     long steps)
+    : problem_(problem), segments_(knots.segments), dof_(knots.dof), steps_(steps) {
+  double q_scale = std::numeric_limits<double>::min();
+  double p_scale = std::numeric_limits<double>::min();
+  for (int j = 0; j < dof_; ++j) {
+    q_scale = std::max(q_scale, std::abs(problem.to[j] - problem.from[j]));
+  }
+  for (int i = 0; i <= segments_; ++i) {
+    for (int j = 0; j < dof_; ++j) {
+      q_scale = std::max(q_scale, std::abs(knots.at(i)[j] - problem.from[j]));
+      p_scale = std::max(p_scale, std::abs(knots.at(i)[dof_ + j]));
+    }
+  }
+  scale_.assign(2 * dof_, p_scale);
+  std::fill(scale_.begin(), scale_.begin() + dof_, q_scale);
+}
+
+bool ShootingEquations::evaluate(
+    int i, const double* z, const double* next, double* residual, double* jacobian) const {
+  const bool last = i + 1 == segments_;
+  const int size = 2 * dof_;
+  const StepPlan plan = knot_plan(problem_, segments_, i, steps_);
+  std::vector<double> end(z, z + size);
+  std::vector<double> tangent(jacobian != nullptr ? size * size : 0);
+  const FlowReport report =
+      jacobian != nullptr ? problem_.segment.tangent_flow(plan, end.data(), tangent.data())
+                          : problem_.segment.flow(plan, end.data());
+  if (!report.completed()) return false;
+  const double* wanted = last ? problem_.to.data() : next;
+  for (int row = 0; row < residuals(i); ++row) {
+    residual[row] = (end[row] - wanted[row]) / scale_[row];
+    if (!std::isfinite(residual[row])) return false;
+    for (int j = 0; jacobian != nullptr && j < size; ++j) {
+      jacobian[row * size + j] = tangent[row * size + j] / scale_[row];
+    }
+  }
+  return true;
+}
+
+bool ShootingEquations::complete(Knots& knots) const {
+  const int last = segments_ - 1;
+  std::copy(knots.at(last), knots.at(last) + 2 * dof_, knots.at(segments_));
+  return problem_.segment
+      .flow(knot_plan(problem_, segments_, last, steps_), knots.at(segments_))
+      .completed();
+}
+
+}  // namespace carnot

@@ -1,0 +1,131 @@
+#include "carnot/shooting/starts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace carnot {
+namespace {
+
+constexpr int kIntervals = 32;
+constexpr int kModes = 3;
+
+// What the straight line tells of sizes.
+struct Scales {
+  double distance = 0;            // D
+  double radian = 1;              // S
+  double violation = 0;           // root mean square of |G(q) (to - from)|
+  std::vector<double> per_metre;  // change of coordinate j that has length 1
+};
+
+Scales measure(const BoundaryValueProblem& problem) {
+  const Segment& segment = problem.segment;
+  const int n = segment.dof;
+  const int k = segment.multipliers;
+  std::vector<double> step(n), middle(n), unit(n), terms(n + k + 1);
+  const auto length_of = [&](const std::vector<double>& v) {
+    double sum = 0;
+    if (!segment.midpoint(middle.data(), v.data(), terms.data(), nullptr)) return 0.0;
+    for (int j = 0; j < n; ++j) sum += terms[j] * terms[j];
+    return std::sqrt(sum);
+  };
+  Scales scales;
+  for (int j = 0; j < n; ++j) step[j] = problem.to[j] - problem.from[j];
+  constexpr int kSamples = 8;
+  for (int i = 0; i < kSamples; ++i) {
+    for (int j = 0; j < n; ++j) middle[j] = problem.from[j] + (i + 0.5) / kSamples * step[j];
+    scales.distance = std::max(scales.distance, length_of(step));
+    for (int j = 0; j < k; ++j) scales.violation += terms[n + j] * terms[n + j] / kSamples;
+  }
+  scales.violation = std::sqrt(scales.violation);
+  double radian2 = 0;
+  int angles = 0;
+  for (int j = 0; j < n; ++j) {
+    std::fill(unit.begin(), unit.end(), 0.0);
+    unit[j] = 1;
+    const double length = std::max(length_of(unit), 1e-300);
+    scales.per_metre.push_back(1 / length);
+    if (segment.info.configuration[j].period > 0) {
+      radian2 += length * length;
+      ++angles;
+    }
+  }
+  if (angles > 0) scales.radian = std::sqrt(radian2 / angles);
+  return scales;
+}
+
+// Amplitudes, modes x n, in units of the wiggle's size.
+std::vector<double> amplitudes(int n, std::uint64_t seed, int i) {
+  std::vector<double> a(static_cast<std::size_t>(n) * kModes, 0.0);
+  std::seed_seq sequence{seed, seed >> 32U, static_cast<std::uint64_t>(i)};
+  std::mt19937_64 random(sequence);
+  std::normal_distribution<double> normal;
+  const int pairs = n * (n - 1) / 2;
+  const int number = i / 4;  // of the designed start, were it one
+  if (i % 4 == 3 && number < 4 * pairs) {
+    int first = 0;
+    int second = 1;
+    for (int skip = number / 4; skip > 0; --skip) {
+      if (++second == n) second = ++first + 1;
+    }
+    a[first] = number % 2 == 0 ? 1 : -1;
+    a[n + second] = number / 2 % 2 == 0 ? 1 : -1;
+    return a;
+  }
+  for (int m = 0; m < kModes; ++m) {
+    for (int j = 0; j < n; ++j) a[m * n + j] = normal(random) / (m + 1);
+  }
+  return a;
+}
+
+}  // namespace
+
+Start make_start(const BoundaryValueProblem& problem, std::uint64_t seed, int i) {
+  constexpr double kMaxAngle = 1;      // radians
+  constexpr double kMaxPenalty = 1e6;  // beyond this the least squares lose their digits
+  constexpr std::array kFactors{1.0, 0.6, 2.0};
+  constexpr std::array kPenalties{1.0, 2.5, 1.0};
+  constexpr std::array kOuter{2, 2, 1};  // one update leaves paths loose: saddles are found too
+  constexpr int kOuterStiff = 4;
+  constexpr double kStiff = 100;
+  const int n = problem.segment.dof;
+  const Scales scales = measure(problem);
+  const double ratio = scales.distance / scales.radian;
+  const bool against = scales.violation > 0.1 * scales.distance && ratio < 0.5;
+  const std::array exponents{1.0 / 3, 0.5, against ? 1.0 / 3 : 1.0};
+  const double unit = scales.radian * std::pow(ratio, exponents[i % 3]);
+  const double size = unit * kFactors[i / 3 % 3];
+  const std::vector<double> a = amplitudes(n, seed, i);
+
+  Start start;
+  start.path.intervals = kIntervals;
+  start.path.dof = n;
+  start.path.q.resize(static_cast<std::size_t>(kIntervals + 1) * n);
+  for (int node = 0; node <= kIntervals; ++node) {
+    const double s = static_cast<double>(node) / kIntervals;
+    const bool end = node == 0 || node == kIntervals;
+    for (int j = 0; j < n; ++j) {
+      double largest = size * scales.per_metre[j];
+      if (problem.segment.info.configuration[j].period > 0) largest = std::min(largest, kMaxAngle);
+      double wiggle = 0;
+      for (int m = 0; m < kModes && !end; ++m) {
+        wiggle += a[m * n + j] * std::sin((m + 1) * std::numbers::pi * s);
+      }
+      const double line = node == kIntervals
+                              ? problem.to[j]
+                              : problem.from[j] + s * (problem.to[j] - problem.from[j]);
+      start.path.configuration(node)[j] = line + largest * wiggle;
+    }
+  }
+  // With rho = 10 (unit / violation)^2 collapsing to the straight line, which violates the
+  // constraints, costs about half the action of a path of that unit. Less, and it collapses.
+  const double collapse = scales.violation > 0 ? unit / scales.violation : 1;
+  const double penalty = 10 * std::max(1.0, collapse * collapse) * kPenalties[i / 9 % 3];
+  start.relaxation.penalty = std::min(penalty, kMaxPenalty);
+  start.relaxation.outer_iterations = penalty > kStiff ? kOuterStiff : kOuter[i / 9 % 3];
+  return start;
+}
+
+}  // namespace carnot

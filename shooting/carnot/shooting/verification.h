@@ -1,0 +1,35 @@
+// From joined knots to a verified extremal.
+//
+// Polishing: the number of steps is doubled until the flow no longer changes, then p(0) is
+// corrected by Newton's method on the end point. Checking: p(0) is integrated once more with twice
+// as many steps and must arrive within the tolerance. Where |dq(T)/dp(0)| makes that impossible in
+// double, the extremal is checked segment by segment at its knots instead and says so.
+#pragma once
+
+#include <optional>
+
+#include "carnot/shooting/geodesic.h"
+#include "carnot/shooting/knots.h"
+
+namespace carnot {
+
+// A verified extremal, its knots, and where it is at equidistant times to tell it from others.
+struct Extremal {
+  Geodesic geodesic;
+  Knots knots;
+  std::vector<std::vector<double>> path;
+};
+
+// Nothing when neither check succeeds. `steps` is where the search for a step begins.
+std::optional<Extremal> verify(const BoundaryValueProblem& problem,
+                               Knots knots,
+                               long steps,
+                               double tolerance);
+
+// The same trajectory: nowhere further apart than 1e-6 of its extent.
+bool same(const Extremal& a, const Extremal& b);
+
+// Samples, conjugate times and label of an extremal that is going to be returned.
+void complete(const BoundaryValueProblem& problem, long samples, Extremal& extremal);
+
+}  // namespace carnot
