@@ -8,6 +8,7 @@
 #include <complex>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 namespace carnot {
 namespace {
@@ -17,15 +18,7 @@ using Eigen::MatrixXd;
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-// A phase point and the plane over it, orthonormal columns of (S^-1 X; S'P).
-struct Frame {
-  double t = 0;
-  std::vector<double> z;
-  MatrixXd plane;
-  double phi = 0;  // continuous argument of det W
-};
-
-// What W says at one frame.
+// What W says of a plane.
 struct Phases {
   MatrixXcd w;
   double sum = 0;      // of the phases in [0, 2 pi)
@@ -50,6 +43,15 @@ Phases phases_of(const MatrixXd& plane) {
   return phases;
 }
 
+// A phase point and the plane over it, orthonormal columns of (S^-1 X; S'P).
+struct Frame {
+  double t = 0;
+  std::vector<double> z;
+  MatrixXd plane;
+  double phi = 0;  // continuous argument of det W
+  Phases phases;
+};
+
 // Coordinates in which the plane before half way along the extremal is far from both axes: with
 // X P^-1 = V diag(a) V' there, S = V diag(|a|^(1/2)) V'. Without it all phases of a problem whose
 // directions move q by very different amounts would hide near zero.
@@ -65,7 +67,10 @@ MatrixXd balance(const MatrixXd& x, const MatrixXd& p) {
 class Planes {
  public:
   Planes(const Segment& segment, const MatrixXd& s)
-      : segment_(segment), s_(s), inverse_(s.inverse()) {}
+      : segment_(segment),
+        s_(s),
+        inverse_(s.inverse()),
+        doubt_(kRoundOff * s_.norm() * inverse_.norm()) {}
 
   // The frame at time t, in as many steps of the method as det W needs to be followed. False when
   // a step fails or W turns too fast.
@@ -79,10 +84,11 @@ class Planes {
 
   // N at a frame, as a real number that is near an integer.
   [[nodiscard]] static double count(const Frame& frame) {
-    return (frame.phi - phases_of(frame.plane).sum) / kTurn;
+    return (frame.phi - frame.phases.sum) / kTurn;
   }
-  [[nodiscard]] static bool ambiguous(const Frame& frame) {
-    return phases_of(frame.plane).nearest < kAmbiguous;
+  // A phase so near to zero that round-off may have put it on the wrong side.
+  [[nodiscard]] bool ambiguous(const Frame& frame) const {
+    return frame.phases.nearest < doubt_;
   }
 
   // The time in (a.t, t] at which the count first exceeds `target`, by bisection.
@@ -115,19 +121,20 @@ class Planes {
     carried.bottomRows(n) = s_ * carried.bottomRows(n);
     const Eigen::HouseholderQR<MatrixXd> qr(carried);
     to.plane = qr.householderQ() * MatrixXd::Identity(2 * n, n);
-    const std::complex<double> turned =
-        (phases_of(to.plane).w * phases_of(from.plane).w.adjoint()).determinant();
+    to.phases = phases_of(to.plane);
+    const std::complex<double> turned = (to.phases.w * from.phases.w.adjoint()).determinant();
     to.phi = from.phi + std::arg(turned);
     return true;
   }
 
-  static constexpr double kLargestTurn = 2.0;   // of det W in one step, safely below pi
-  static constexpr double kAmbiguous = 1e-11;   // round-off of an orthonormal plane, with margin
+  static constexpr double kLargestTurn = 0.8;   // of det W in one step; 2 pi more would go unseen
+  static constexpr double kRoundOff = 1e-14;    // of a plane, before S magnifies it
   static constexpr double kPrecision = 1e-13;
 
   const Segment& segment_;
   MatrixXd s_;
   MatrixXd inverse_;
+  double doubt_;
 };
 
 // balance() somewhat before T/2, where symmetric extremals have nothing special.
@@ -154,14 +161,12 @@ std::optional<MatrixXd> before_half(const BoundaryValueProblem& problem,
   return s;
 }
 
-}  // namespace
-
-ConjugateTimes conjugate_times(const BoundaryValueProblem& problem,
-                               const Knots& knots,
-                               long steps) {
+// One pass at a given number of steps.
+ConjugateTimes follow(const BoundaryValueProblem& problem, const Knots& knots, long steps) {
   const int n = problem.segment.dof;
-  Frame frame{0, {knots.at(0), knots.at(0) + 2 * n}, MatrixXd::Zero(2 * n, n), 0};
+  Frame frame{0, {knots.at(0), knots.at(0) + 2 * n}, MatrixXd::Zero(2 * n, n), 0, {}};
   frame.plane.bottomRows(n).setIdentity();
+  frame.phases = phases_of(frame.plane);
   const std::optional<MatrixXd> s = before_half(problem, knots, steps);
   if (!s) return {};
   const Planes planes(problem.segment, *s);
@@ -179,7 +184,7 @@ ConjugateTimes conjugate_times(const BoundaryValueProblem& problem,
       next.z.assign(knot, knot + 2 * n);
     }
     frame = next;
-    if (Planes::ambiguous(frame)) continue;
+    if (planes.ambiguous(frame)) continue;
     const int count = static_cast<int>(std::lround(Planes::count(frame)));
     for (; counted < count; ++counted) {
       result.times.push_back(planes.locate(clear, frame.t, counted));
@@ -187,9 +192,26 @@ ConjugateTimes conjugate_times(const BoundaryValueProblem& problem,
     if (count < counted) return {};
     clear = frame;
   }
-  result.known = clear.t == frame.t;
-  if (!result.known) result.times.clear();
+  if (clear.t != frame.t) return {};
+  result.known = true;
   return result;
+}
+
+}  // namespace
+
+ConjugateTimes conjugate_times(const BoundaryValueProblem& problem,
+                               const Knots& knots,
+                               long steps) {
+  // A phase that makes a whole turn within one step goes unseen: two passes must agree.
+  constexpr int kDoublings = 4;
+  ConjugateTimes coarse = follow(problem, knots, steps);
+  for (int i = 0; i < kDoublings; ++i) {
+    steps *= 2;
+    ConjugateTimes fine = follow(problem, knots, steps);
+    if (coarse.known && fine.known && coarse.times.size() == fine.times.size()) return fine;
+    coarse = std::move(fine);
+  }
+  return {};
 }
 
 }  // namespace carnot

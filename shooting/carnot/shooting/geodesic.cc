@@ -10,6 +10,7 @@
 #include "carnot/shooting/multiple_shooting.h"
 #include "carnot/shooting/parallel.h"
 #include "carnot/shooting/starts.h"
+#include "carnot/shooting/sweep.h"
 #include "carnot/shooting/symmetry.h"
 #include "carnot/shooting/verification.h"
 
@@ -20,7 +21,8 @@ constexpr int kSegments = 8;       // of multiple shooting; divides the interval
 constexpr long kFirstSteps = 32;   // of the method over [0, T]
 constexpr int kRound = 12;         // starts between two looks at the list
 constexpr int kMaxStarts = 96;     // when the best extremal keeps changing
-constexpr int kMaxStartsAll = 480;
+constexpr int kMaxStartsAll = 240;
+constexpr int kSweeps = 24;        // rounds of near hits, where more than the best is wanted
 constexpr int kEnoughHits = 3;     // of the least action, before a search for it ends
 constexpr double kSameAction = 1e-9;
 
@@ -43,11 +45,16 @@ class Search {
   bool run() {
     const int limit = options_.starts > 0 ? options_.starts
                                           : (wants_all() ? kMaxStartsAll : kMaxStarts);
+    const int sweeps = wants_all() ? kSweeps : 0;
+    const auto goes_on = [&](double share) { return !options_.progress || options_.progress(share); };
     while (starts_ < limit && !settled()) {
-      if (options_.progress && !options_.progress(static_cast<double>(starts_) / limit)) {
-        return false;
-      }
-      round(std::min(kRound, limit - starts_));
+      const double share = static_cast<double>(starts_) / limit;
+      if (!goes_on(sweeps > 0 ? 0.5 * share : share)) return false;
+      relax_round(std::min(kRound, limit - starts_));
+    }
+    for (int round = 0; round < sweeps && !extremals_.empty(); ++round) {
+      if (!goes_on(0.5 + 0.5 * round / sweeps)) return false;
+      sweep_round(round);
     }
     return true;
   }
@@ -98,10 +105,51 @@ class Search {
     return hits >= kEnoughHits;
   }
 
-  void round(int count) {
+  void relax_round(int count) {
     std::vector<Candidate> candidates(count);
     parallel_for(count, threads_, [&](int i) { candidates[i] = relax_start(starts_ + i); });
-    starts_ += count;
+    absorb(candidates);
+  }
+
+  // Energies from that of the shortest extremal to twice that, or to the longest one.
+  void sweep_round(int round) {
+    SweepOptions sweep;
+    sweep.seed = options_.seed;
+    sweep.round = round;
+    sweep.momentum_scale.assign(problem_.segment.dof, 0.0);
+    double shortest = std::numeric_limits<double>::infinity();
+    double longest = 0;
+    double largest = 0;
+    for (const Extremal& extremal : extremals_) {
+      const Geodesic& geodesic = extremal.geodesic;
+      shortest = std::min(shortest, geodesic.length.value_or(0));
+      longest = std::max(longest, geodesic.length.value_or(0));
+      for (std::size_t j = 0; j < geodesic.p0.size(); ++j) {
+        const double size = std::abs(geodesic.p0[j]);
+        sweep.momentum_scale[j] = std::max(sweep.momentum_scale[j], size);
+        largest = std::max(largest, size);
+      }
+    }
+    for (double& scale : sweep.momentum_scale) scale = std::max(scale, 0.3 * largest);
+    longest = std::min(std::max(longest, std::sqrt(2.0) * shortest), options_.max_length);
+    const auto energy = [&](double length) {
+      const double speed = length / problem_.time;
+      return 0.5 * speed * speed;
+    };
+    sweep.lowest = energy(0.9 * shortest);
+    sweep.highest = energy(longest);
+    std::vector<Path> paths = near_hits(problem_, sweep, threads_);
+    std::vector<Candidate> candidates(paths.size());
+    parallel_for(static_cast<int>(paths.size()), threads_, [&](int i) {
+      candidates[i].found = tighten(problem_, {}, paths[i]).converged;
+      candidates[i].path = std::move(paths[i]);
+    });
+    absorb(candidates);
+  }
+
+  // Polishes what is new among the candidates and adds it to the list.
+  void absorb(const std::vector<Candidate>& candidates) {
+    starts_ += static_cast<int>(candidates.size());
     // In the order of the starts, so that the list does not depend on the threads.
     std::vector<const Path*> fresh;
     std::vector<std::size_t> fresh_index;
@@ -169,6 +217,7 @@ class Search {
   [[nodiscard]] std::size_t find_discrete(const Path& path) const {
     constexpr double kSame = 1e-6;
     for (std::size_t i = 0; i < discrete_.size(); ++i) {
+      if (discrete_[i].q.size() != path.q.size()) continue;
       double apart = 0;
       double extent = 0;
       for (std::size_t j = 0; j < path.q.size(); ++j) {

@@ -3,7 +3,7 @@
 namespace carnot {
 
 std::vector<std::string> minimisers() {
-  return {"ceres", "nlopt", "nlopt:slsqp", "nlopt:lbfgs", "nlopt:tnewton", "nlopt:var2"};
+  return {"ceres", "nlopt", "nlopt:slsqp"};
 }
 
 Shooting shoot(const BoundaryValueProblem& problem, const ShootingOptions& options, Knots& knots) {

@@ -2,9 +2,8 @@
 //
 // Each flow is short, so |dz(t_{i+1})/dz(t_i)| stays moderate where single shooting sees up to
 // 1e16. One segment is single shooting. The zero of the equations (shooting_equations.h) is found
-//   ceres        by Levenberg-Marquardt on their sum of squares,
-//   nlopt:NAME   by NLopt: slsqp takes the jumps as equality constraints, lbfgs, tnewton and
-//                var2 minimise the sum of squares. `nlopt` alone is nlopt:slsqp.
+//   ceres                by Levenberg-Marquardt on their sum of squares,
+//   nlopt, nlopt:slsqp   by NLopt's SLSQP with the jumps as equality constraints.
 #pragma once
 
 #include <string>
@@ -16,7 +15,7 @@ namespace carnot {
 
 struct ShootingOptions {
   std::string minimiser = "ceres";
-  int max_iterations = 30;  // of Ceres; NLopt may take ten times as many evaluations
+  int max_iterations = 30;  // of Ceres; NLopt may take twice as many evaluations
   long steps = 32;          // of the method over the whole time; at least one a segment
   double tolerance = 1e-9;  // Euclidean norm of the scaled jumps
 };

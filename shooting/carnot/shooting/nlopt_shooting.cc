@@ -1,7 +1,7 @@
-// Multiple shooting by NLopt, on the unknowns p(0), z_1, ..., stacked.
+// Multiple shooting by NLopt's SLSQP: the jumps are equality constraints on the unknowns p(0), z_1,
+// ..., stacked, and nothing is minimised, so that each iteration is a Newton step of least norm.
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <nlopt.hpp>
 
 #include "carnot/shooting/multiple_shooting.h"
@@ -67,38 +67,14 @@ class Stacked {
   std::vector<double> q0_;
 };
 
-double sum_of_squares(unsigned size, const double* x, double* gradient, void* data) {
-  const auto& stacked = *static_cast<const Stacked*>(data);
-  std::vector<double> residual(size);
-  std::vector<double> jacobian(gradient != nullptr ? size * size : 0);
-  stacked.evaluate(x, residual.data(), gradient != nullptr ? jacobian.data() : nullptr);
-  double sum = 0;
-  for (unsigned r = 0; r < size; ++r) sum += 0.5 * residual[r] * residual[r];
-  for (unsigned c = 0; gradient != nullptr && c < size; ++c) {
-    gradient[c] = 0;
-    for (unsigned r = 0; r < size; ++r) gradient[c] += residual[r] * jacobian[r * size + c];
-  }
-  return sum;
-}
-
-// Feasibility is all that SLSQP is asked for.
 double nothing(unsigned size, const double* /*x*/, double* gradient, void* /*data*/) {
   if (gradient != nullptr) std::fill(gradient, gradient + size, 0.0);
   return 0;
 }
 
 void jumps(
-    unsigned m, double* result, unsigned /*size*/, const double* x, double* gradient, void* data) {
-  static_cast<const Stacked*>(data)->evaluate(x, result, gradient);
-  (void)m;
-}
-
-nlopt::algorithm algorithm_of(const std::string& minimiser) {
-  const std::map<std::string, nlopt::algorithm> names{{"nlopt:lbfgs", nlopt::LD_LBFGS},
-                                                      {"nlopt:tnewton", nlopt::LD_TNEWTON_PRECOND},
-                                                      {"nlopt:var2", nlopt::LD_VAR2}};
-  const auto found = names.find(minimiser);
-  return found != names.end() ? found->second : nlopt::LD_SLSQP;
+    unsigned /*m*/, double* out, unsigned /*size*/, const double* x, double* gradient, void* data) {
+  static_cast<const Stacked*>(data)->evaluate(x, out, gradient);
 }
 
 }  // namespace
@@ -108,22 +84,13 @@ Shooting shoot_with_nlopt(const BoundaryValueProblem& problem,
                           Knots& knots) {
   const ShootingEquations equations(problem, knots, options.steps);
   Stacked stacked(equations, knots.at(0));
-  const nlopt::algorithm algorithm = algorithm_of(options.minimiser);
-  nlopt::opt solver(algorithm, stacked.unknowns());
+  nlopt::opt solver(nlopt::LD_SLSQP, stacked.unknowns());
   std::vector<double> x = stacked.pack(knots);
-  const double cost = 0.5 * options.tolerance * options.tolerance;
-  if (algorithm == nlopt::LD_SLSQP) {
-    const double each = options.tolerance / std::sqrt(static_cast<double>(stacked.unknowns()));
-    solver.set_min_objective(nothing, nullptr);
-    solver.add_equality_mconstraint(
-        jumps, &stacked, std::vector<double>(stacked.unknowns(), each));
-    solver.set_stopval(0);
-    solver.set_maxeval(2 * options.max_iterations);
-  } else {
-    solver.set_min_objective(sum_of_squares, &stacked);
-    solver.set_stopval(cost);
-    solver.set_maxeval(10 * options.max_iterations);
-  }
+  const double each = options.tolerance / std::sqrt(static_cast<double>(stacked.unknowns()));
+  solver.set_min_objective(nothing, nullptr);
+  solver.add_equality_mconstraint(jumps, &stacked, std::vector<double>(stacked.unknowns(), each));
+  solver.set_stopval(0);
+  solver.set_maxeval(2 * options.max_iterations);
   Shooting result;
   double value = 0;
   try {
@@ -133,7 +100,9 @@ Shooting shoot_with_nlopt(const BoundaryValueProblem& problem,
   }
   result.iterations = solver.get_numevals();
   stacked.unpack(x, knots);
-  result.residual = std::sqrt(2 * sum_of_squares(stacked.unknowns(), x.data(), nullptr, &stacked));
+  std::vector<double> residual(stacked.unknowns());
+  stacked.evaluate(x.data(), residual.data(), nullptr);
+  for (const double r : residual) result.residual = std::hypot(result.residual, r);
   result.converged = equations.complete(knots) && result.residual <= options.tolerance;
   return result;
 }

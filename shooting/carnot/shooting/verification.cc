@@ -230,7 +230,7 @@ void complete(const BoundaryValueProblem& problem, long samples, Extremal& extre
     geodesic.extremes.emplace_back(extreme.name, largest);
   }
   if (samples > 0) geodesic.trajectory = survey(problem, extremal.knots, steps, samples).trajectory;
-  const ConjugateTimes conjugate = conjugate_times(problem, extremal.knots, steps);
+  const ConjugateTimes conjugate = conjugate_times(problem, extremal.knots, steps / 2);
   if (!conjugate.known) return;
   geodesic.conjugate_times = conjugate.times;
   const auto inner = std::count_if(conjugate.times.begin(), conjugate.times.end(), [&](double t) {

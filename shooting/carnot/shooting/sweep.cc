@@ -1,0 +1,109 @@
+#include "carnot/shooting/sweep.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "carnot/shooting/knots.h"
+#include "carnot/shooting/parallel.h"
+
+namespace carnot {
+namespace {
+
+constexpr long kSteps = 16;      // enough to see where a trajectory goes
+constexpr int kIntervals = 64;   // of the paths made
+
+struct Draw {
+  std::vector<double> p;
+  double miss = std::numeric_limits<double>::infinity();
+};
+
+// A random momentum at `from` with a kinetic energy in the range; empty where there is none.
+std::vector<double> draw_momentum(const BoundaryValueProblem& problem,
+                                  const SweepOptions& options,
+                                  std::mt19937_64& random) {
+  const int n = problem.segment.dof;
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform(options.lowest, options.highest);
+  std::vector<double> p(n), zero(n, 0.0), velocity(n), lambda(problem.segment.multipliers + 1);
+  for (int j = 0; j < n; ++j) p[j] = options.momentum_scale[j] * normal(random);
+  const auto energy = [&](const std::vector<double>& at) {
+    return problem.segment
+        .evaluate(0, problem.from.data(), at.data(), velocity.data(), lambda.data())
+        .hamiltonian;
+  };
+  const double kinetic = energy(p) - energy(zero);  // quadratic in p
+  if (!(kinetic > 0)) return {};
+  const double factor = std::sqrt(uniform(random) / kinetic);
+  for (double& x : p) x *= factor;
+  return p;
+}
+
+Draw draw(const BoundaryValueProblem& problem, const SweepOptions& options, int i) {
+  std::seed_seq sequence{options.seed,
+                         options.seed >> 32U,
+                         static_cast<std::uint64_t>(options.round),
+                         static_cast<std::uint64_t>(i)};
+  std::mt19937_64 random(sequence);
+  Draw result{draw_momentum(problem, options, random)};
+  if (result.p.empty()) return result;
+  std::vector<double> z = problem.from;
+  z.insert(z.end(), result.p.begin(), result.p.end());
+  const StepPlan plan = StepPlan::equal(0, problem.time, kSteps);
+  if (!problem.segment.flow(plan, z.data()).completed()) return result;
+  double miss = 0;
+  for (int j = 0; j < problem.segment.dof; ++j) {
+    miss = std::max(miss, std::abs(z[j] - problem.to[j]));
+  }
+  if (std::isfinite(miss)) result.miss = miss;
+  return result;
+}
+
+// The trajectory from p with its end pulled to the target, and its multipliers.
+Path pulled(const BoundaryValueProblem& problem, const std::vector<double>& p) {
+  const Segment& segment = problem.segment;
+  const int n = segment.dof;
+  const int k = segment.multipliers;
+  const Knots knots = knots_of(problem, p, kIntervals, kIntervals);
+  Path path;
+  path.intervals = kIntervals;
+  path.dof = n;
+  path.q.resize(static_cast<std::size_t>(kIntervals + 1) * n);
+  path.lambda.resize(static_cast<std::size_t>(kIntervals) * k);
+  for (int i = 0; i <= kIntervals; ++i) {
+    const double share = static_cast<double>(i) / kIntervals;
+    for (int j = 0; j < n; ++j) {
+      const double missing = problem.to[j] - knots.at(kIntervals)[j];
+      path.configuration(i)[j] = knots.at(i)[j] + share * missing;
+    }
+  }
+  std::copy(problem.to.begin(), problem.to.end(), path.configuration(kIntervals));
+  std::vector<double> middle(2 * n), velocity(n);
+  for (int i = 0; i < kIntervals && k > 0; ++i) {
+    for (int j = 0; j < 2 * n; ++j) middle[j] = 0.5 * (knots.at(i)[j] + knots.at(i + 1)[j]);
+    segment.evaluate(
+        0, middle.data(), middle.data() + n, velocity.data(), path.lambda.data() + i * k);
+  }
+  return path;
+}
+
+}  // namespace
+
+std::vector<Path> near_hits(const BoundaryValueProblem& problem,
+                            const SweepOptions& options,
+                            int threads) {
+  std::vector<Draw> draws(options.flows);
+  parallel_for(options.flows, threads, [&](int i) { draws[i] = draw(problem, options, i); });
+  std::stable_sort(draws.begin(), draws.end(), [](const Draw& a, const Draw& b) {
+    return a.miss < b.miss;
+  });
+  const auto kept = std::min<std::size_t>(options.keep, draws.size());
+  std::vector<Path> paths;
+  for (std::size_t i = 0; i < kept && std::isfinite(draws[i].miss); ++i) {
+    paths.push_back(pulled(problem, draws[i].p));
+  }
+  return paths;
+}
+
+}  // namespace carnot
