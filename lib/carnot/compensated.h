@@ -3,8 +3,8 @@
 
 namespace carnot {
 
-// value + compensation is the sum to about twice the precision of T, a scalar or an Eigen vector,
-// as long as increments are smaller than the value.
+// value + compensation is the sum, a scalar or an Eigen vector, but for one rounding of each
+// increment, as long as increments are smaller than the value.
 template <class T>
 struct Compensated {
   T value;

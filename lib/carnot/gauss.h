@@ -56,8 +56,8 @@ RateStatus phase_rate(const System& system,
                       Vector<T, 2 * System::kDof>& z_dot) {
   constexpr int n = System::kDof;
   Rate<T, n> rate;
-  const RateStatus status =
-      system.rate(t, Vector<T, n>(z.template head<n>()), Vector<T, n>(z.template tail<n>()), y, rate);
+  const RateStatus status = system.rate(
+      t, Vector<T, n>(z.template head<n>()), Vector<T, n>(z.template tail<n>()), y, rate);
   z_dot.template head<n>() = rate.q_dot;
   z_dot.template tail<n>() = rate.p_dot;
   return status;
@@ -98,8 +98,13 @@ class Gauss {
   // Advances z from t to t + h. On failure z is unchanged. Allocates nothing.
   [[nodiscard]] StepReport step(const T& t, const T& h, State<T, kDof>& z) {
     StepReport report;
+    if (!z.value.allFinite()) {
+      report.status = StepStatus::kRateFailed;
+      report.rate = RateStatus::kNotFinite;
+      return report;
+    }
     if (!predict(t, h, z, report)) return report;
-    if (!iterate(t, h, z, report) && report.status == StepStatus::kOk) newton(t, h, z, report);
+    if (!iterate(t, h, z, report)) retry_with_newton(t, h, z, report);
     if (report.status != StepStatus::kOk) {
       last_step_ = T(0);
       return report;
@@ -126,8 +131,8 @@ class Gauss {
   bool evaluate(const T& t, const T& h, int i, StepReport& report) {
     Vector<T, System::kAlgebraic> y = algebraic_.col(i);
     Vector<T, kSize> f;
-    report.rate = phase_rate(
-        system_, T(t + tableau_.c[i] * h), Vector<T, kSize>(stages_.col(i)), y, f);
+    report.rate =
+        phase_rate(system_, T(t + tableau_.c[i] * h), Vector<T, kSize>(stages_.col(i)), y, f);
     ++report.evaluations;
     if (report.rate != RateStatus::kOk) {
       report.status = StepStatus::kRateFailed;
@@ -178,39 +183,35 @@ class Gauss {
         smallest[k] = std::min(smallest[k], change[k]);
       }
       for (int i = 0; i < s; ++i) {
-        if (!evaluate(t, h, i, report)) return retry_with_newton(t, h, z, report);
+        if (!evaluate(t, h, i, report)) return false;
       }
       if (at_rest) return true;
       if (!falling) {
-        if (!grace) return settled(smallest);
+        if (!grace) return settled(change);
         grace = false;
       }
     }
     return false;
   }
 
-  // The iteration may have run away to where the rate fails: from the start of the step Newton
-  // gets its own chance.
-  bool retry_with_newton(const T& t, const T& h, const State<T, kDof>& z, StepReport& report) {
-    const RateStatus failed = report.rate;
+  // The iteration may have run away, even to where the rate fails: Newton begins again at the
+  // start of the step.
+  void retry_with_newton(const T& t, const T& h, const State<T, kDof>& z, StepReport& report) {
     report.status = StepStatus::kOk;
     last_step_ = T(0);
-    if (!predict(t, h, z, report)) return false;
-    newton(t, h, z, report);
-    if (report.status == StepStatus::kRateFailed) report.rate = failed;
-    return report.status == StepStatus::kOk;
+    if (predict(t, h, z, report)) newton(t, h, z, report);
   }
 
   // Stalled changes must be round-off of the stages, else the iteration did not contract.
   [[nodiscard]] bool settled(const Vector<T, kSize>& change) const {
     constexpr int kRoundOff = 1000;
     const T scale = stages_.cwiseAbs().maxCoeff();
-    return change.maxCoeff() <= T(kRoundOff) * std::numeric_limits<T>::epsilon() * scale;
+    const T limit = T(kRoundOff) * std::numeric_limits<T>::epsilon() * scale;
+    return (change.array() <= limit).all();  // false for a NaN, which maxCoeff may skip
   }
 
   // Solves U_i - z - e - sum_j mu_ij h b_j f(U_j) = 0 for all stages at once.
   void newton(const T& t, const T& h, const State<T, kDof>& z, StepReport& report) {
-    using std::isfinite;
     report.newton = true;
     T smallest = std::numeric_limits<T>::max();
     stages_ = increments_.lazyProduct(tableau_.mu.transpose()).colwise() + z.value;
@@ -222,10 +223,10 @@ class Gauss {
       if (!lu_solve(kSize * s, newton_matrix_.data(), 1, correction.data())) break;
       stages_ += correction;
       const T change = correction.cwiseAbs().maxCoeff();
-      if (!isfinite(change)) break;
+      if (!correction.allFinite()) break;
       const bool stalled = change >= smallest;
       smallest = std::min(smallest, change);
-      if (change == T(0) || (stalled && settled(Vector<T, kSize>::Constant(smallest)))) {
+      if (change == T(0) || (stalled && settled(Vector<T, kSize>::Constant(change)))) {
         for (int j = 0; j < s; ++j) {
           if (!evaluate(t, h, j, report)) return;
         }

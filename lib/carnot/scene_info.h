@@ -91,10 +91,14 @@ struct SceneInfo {
 };
 
 template <class Scene>
-concept HasInfo = requires(const Scene& scene) { scene.info(); };
+concept HasInfo = requires(const Scene& scene) {
+  scene.info();
+};
 
 template <class Scene>
-concept HasParameters = requires { Scene::parameters(); };
+concept HasParameters = requires {
+  Scene::parameters();
+};
 
 // The scene's own description, or q1, ..., qn.
 template <class Scene>

@@ -79,8 +79,10 @@ struct Segment {
   }
   // Terms of one midpoint interval at (qm, v): r (n), c (k), V (1), stacked; jacobian row-major
   // (n + k + 1) x 2n with respect to (qm, v), may be null.
-  [[nodiscard]] bool midpoint(
-      const double* qm, const double* v, double* terms, double* jacobian) const {
+  [[nodiscard]] bool midpoint(const double* qm,
+                              const double* v,
+                              double* terms,
+                              double* jacobian) const {
     return calls.midpoint(system.get(), qm, v, terms, jacobian);
   }
   // Gradient and Hessian of the discrete Lagrangian F_d with respect to x = (q0, q1, lambda), of
@@ -206,8 +208,7 @@ double momentum(
   const double violated = system.constraint(q, v).norm();
   if (system.project(q, v) != RateStatus::kOk) v.setConstant(std::nan(""));
   view<System::kDof>(q_dot) = v;
-  view<System::kDof>(p) =
-      system.momentum(q, v, K(view<System::kMultipliers>(lambda)));
+  view<System::kDof>(p) = system.momentum(q, v, K(view<System::kMultipliers>(lambda)));
   return size > 0 ? violated / size : 0;
 }
 

@@ -6,8 +6,9 @@
 
 namespace carnot {
 
-// Advances z and m; start with m = identity. `m` is d z(t)/d z(0) at `time_reached`, 2n x 2n. The
-// observer is that of flow(). A tangent that cannot be formed counts as a failed rate.
+// Advances z and m; start with m = identity. `m` is d z(t)/d z(0), 2n x 2n. The observer
+// is that of flow(). A tangent that cannot be formed counts as a failed rate; m is then that of the
+// step before.
 template <class Stepper, class Observer>
 FlowReport tangent_flow(
     Stepper& stepper,

@@ -32,7 +32,7 @@ inline std::vector<double> sample_times(const StepPlan& plan, long samples) {
 
 // Observer of flow() that records the state at given times of the plan, in its direction. A time
 // between nodes is reached by a shortened full-order step from the node before; the run itself is
-// not touched.
+// not touched. A sample that fails is NaN.
 template <class Stepper>
 class Recorder {
  public:
@@ -55,7 +55,8 @@ class Recorder {
     const double from = plan_.time(i);
     const double to = plan_.time(i + 1);
     const double tolerance = kNodeTolerance * std::abs(to - from);
-    while (next() < times_.size() && std::abs(times_[next()] - from) <= std::abs(to - from) + tolerance) {
+    while (next() < times_.size() &&
+           std::abs(times_[next()] - from) <= std::abs(to - from) + tolerance) {
       const double t = times_[next()];
       if (std::abs(t - to) <= tolerance) {
         record(t, z);
@@ -63,7 +64,9 @@ class Recorder {
       }
       Stepper shortened(system_);
       State<double, n> between = node_;
-      if (shortened.step(from, t - from, between).status != StepStatus::kOk) between = node_;
+      if (shortened.step(from, t - from, between).status != StepStatus::kOk) {
+        between.value.setConstant(std::numeric_limits<double>::quiet_NaN());
+      }
       record(t, between);
     }
     node_ = z;

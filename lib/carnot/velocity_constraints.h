@@ -43,9 +43,7 @@ concept HasPotential = requires(const S& scene, const Vector<double, S::kDof>& q
 // B(q), n x (n - k), columns that span ker G(q).
 template <class S>
 concept HasFrame = requires(const S& scene, const Vector<double, S::kDof>& q) {
-  {
-    scene.frame(q)
-    } -> std::convertible_to<Matrix<double, S::kDof, S::kDof - S::kMultipliers>>;
+  { scene.frame(q) } -> std::convertible_to<Matrix<double, S::kDof, S::kDof - S::kMultipliers>>;
 };
 
 // d/dq [p.B(q) u - u'(B'M B) u/2 + V(q)] at fixed p, u: the derivative by hand.
@@ -62,8 +60,7 @@ template <class S>
 concept HasFrameMass = HasFrame<S> && requires(const S& scene, const Vector<double, S::kDof>& q) {
   {
     scene.frame_mass(q)
-    } -> std::convertible_to<
-        Matrix<double, S::kDof - S::kMultipliers, S::kDof - S::kMultipliers>>;
+    } -> std::convertible_to<Matrix<double, S::kDof - S::kMultipliers, S::kDof - S::kMultipliers>>;
 };
 
 template <VelocityConstrainedScene Scene>

@@ -9,11 +9,10 @@
 // Invariants: H, p_z, x p_y - y p_x. Source: Montgomery, A Tour of Subriemannian Geometries (2002).
 #pragma once
 
-#include <cmath>
-
 #include "carnot/linear_algebra.h"
 #include "carnot/scalar.h"
 #include "carnot/scene_info.h"
+#include "carnot/stumpff.h"
 
 namespace carnot::scenes {
 
@@ -57,15 +56,15 @@ struct HeisenbergGroup {
     return {half * u[1], -half * u[0], constant<T>(0)};
   }
 
-  // The extremal from the origin with momentum p at time t, in closed form.
+  // The extremal from the origin with momentum p at time t, in closed form; Stumpff functions keep
+  // its digits as w -> 0.
   static Vector<double, 3> closed_form(const Vector<double, 3>& p, double t) {
-    const double w = p[2];
     const double speed2 = p[0] * p[0] + p[1] * p[1];
-    if (w * t == 0) return {p[0] * t, p[1] * t, 0};
-    const double s = std::sin(w * t) / w;
-    const double half_sine = std::sin(0.5 * w * t);
-    const double c = 2 * half_sine * half_sine / w;  // (1 - cos w t) / w
-    return {p[0] * s - p[1] * c, p[1] * s + p[0] * c, speed2 * (t - s) / (2 * w)};
+    const double turn = p[2] * t;
+    const double s = t * stumpff<1>(turn * turn);         // sin(w t) / w
+    const double c = t * turn * stumpff<2>(turn * turn);  // (1 - cos(w t)) / w
+    const double z = 0.5 * speed2 * t * t * turn * stumpff<3>(turn * turn);
+    return {p[0] * s - p[1] * c, p[1] * s + p[0] * c, z};
   }
 
   [[nodiscard]] SceneInfo info() const {

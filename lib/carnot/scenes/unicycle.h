@@ -76,13 +76,13 @@ struct Unicycle {
     info.configuration = {
         {"x", "length", 0}, {"y", "length", 0}, {"theta", "rad", 2 * std::numbers::pi}};
     info.symmetries = {{{1, -1, -1}}, 0, 1, {2}};
-    info.drawing = {Drawing::View::kPlane, {0, 1, 2}, [r = 0.15 * beta](const double* q) {
-                      const double dx = r * std::cos(q[2]);
-                      const double dy = r * std::sin(q[2]);
-                      return std::vector<Polyline>{
-                          {Polyline::Role::kWheel,
-                           {{q[0] - dx, q[1] - dy}, {q[0] + dx, q[1] + dy}}}};
-                    }};
+    info.drawing = {
+        Drawing::View::kPlane, {0, 1, 2}, [r = 0.15 * beta](const double* q) {
+          const double dx = r * std::cos(q[2]);
+          const double dy = r * std::sin(q[2]);
+          return std::vector<Polyline>{
+              {Polyline::Role::kWheel, {{q[0] - dx, q[1] - dy}, {q[0] + dx, q[1] + dy}}}};
+        }};
     return info;
   }
 };

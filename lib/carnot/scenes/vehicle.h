@@ -123,10 +123,10 @@ struct Vehicle {
     info.configuration = {
         {"x", "length", 0}, {"y", "length", 0}, {"theta", "rad", kTurn}, {"phi", "rad", kTurn}};
     info.symmetries = {{{1, -1, -1, -1}}, 0, 1, {2, 3}};
-    info.drawing = {Drawing::View::kPlane, {0, 1, 2}, [l = length](const double* q) {
-                      return body(l, q);
-                    }};
-    info.extremes = {{"largest_steering_angle", "rad", [](const double* q) { return q[3] - q[2]; }}};
+    info.drawing = {
+        Drawing::View::kPlane, {0, 1, 2}, [l = length](const double* q) { return body(l, q); }};
+    info.extremes = {
+        {"largest_steering_angle", "rad", [](const double* q) { return q[3] - q[2]; }}};
     return info;
   }
 

@@ -20,8 +20,7 @@ void check_end(const char* name, const std::vector<double>& q, const Segment& se
   const std::vector<double> zero(segment.dof, 0.0);
   std::vector<double> q_dot(segment.dof);
   std::vector<double> lambda(segment.multipliers + 1);
-  const PointValues at =
-      segment.evaluate(0, q.data(), zero.data(), q_dot.data(), lambda.data());
+  const PointValues at = segment.evaluate(0, q.data(), zero.data(), q_dot.data(), lambda.data());
   if (at.status != RateStatus::kOk) {
     throw std::invalid_argument(std::string(name) + ": " + std::string(describe(at.status)));
   }

@@ -62,6 +62,16 @@ class StopWhenJoined final : public ceres::IterationCallback {
   double cost_;
 };
 
+// Ceres logs an error when the first evaluation fails; a library must not print.
+bool can_begin(const ShootingEquations& equations, const Knots& knots) {
+  std::vector<double> residual(2 * knots.dof);
+  for (int i = 0; i < knots.segments; ++i) {
+    if (!equations.evaluate(i, knots.at(i), knots.at(i + 1), residual.data(), nullptr))
+      return false;
+  }
+  return true;
+}
+
 ceres::Solver::Options solver_options(const ShootingOptions& options) {
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;
@@ -82,6 +92,7 @@ Shooting shoot_with_ceres(const BoundaryValueProblem& problem,
                           Knots& knots) {
   const int n = knots.dof;
   const ShootingEquations equations(problem, knots, options.steps);
+  if (!can_begin(equations, knots)) return {};
   ceres::Problem joined;
   for (int i = 0; i < knots.segments; ++i) {
     double* z = knots.at(i);

@@ -87,9 +87,7 @@ class Planes {
     return (frame.phi - frame.phases.sum) / kTurn;
   }
   // A phase so near to zero that round-off may have put it on the wrong side.
-  [[nodiscard]] bool ambiguous(const Frame& frame) const {
-    return frame.phases.nearest < doubt_;
-  }
+  [[nodiscard]] bool ambiguous(const Frame& frame) const { return frame.phases.nearest < doubt_; }
 
   // The time in (a.t, t] at which the count first exceeds `target`, by bisection.
   [[nodiscard]] double locate(const Frame& a, double t, double target) const {
@@ -127,8 +125,8 @@ class Planes {
     return true;
   }
 
-  static constexpr double kLargestTurn = 0.8;   // of det W in one step; 2 pi more would go unseen
-  static constexpr double kRoundOff = 1e-14;    // of a plane, before S magnifies it
+  static constexpr double kLargestTurn = 0.8;  // of det W in one step; 2 pi more would go unseen
+  static constexpr double kRoundOff = 1e-14;   // of a plane, before S magnifies it
   static constexpr double kPrecision = 1e-13;
 
   const Segment& segment_;
@@ -139,8 +137,8 @@ class Planes {
 
 // balance() somewhat before T/2, where symmetric extremals have nothing special.
 std::optional<MatrixXd> before_half(const BoundaryValueProblem& problem,
-                                 const Knots& knots,
-                                 long steps) {
+                                    const Knots& knots,
+                                    long steps) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const int n = problem.segment.dof;
   constexpr double kFraction = 0.43;
@@ -175,8 +173,8 @@ ConjugateTimes follow(const BoundaryValueProblem& problem, const Knots& knots, l
   int counted = 0;
   const long per_segment = std::max(1L, (steps + knots.segments - 1) / knots.segments);
   for (long i = 1; i <= per_segment * knots.segments; ++i) {
-    const double t = problem.time * static_cast<double>(i) /
-                     static_cast<double>(per_segment * knots.segments);
+    const double t =
+        problem.time * static_cast<double>(i) / static_cast<double>(per_segment * knots.segments);
     Frame next;
     if (!planes.advance(frame, t, next)) return {};
     if (i % per_segment == 0) {

@@ -27,8 +27,6 @@ struct ConjugateTimes {
 };
 
 // Along the extremal through `knots`; `steps` of the method over the whole time.
-ConjugateTimes conjugate_times(const BoundaryValueProblem& problem,
-                               const Knots& knots,
-                               long steps);
+ConjugateTimes conjugate_times(const BoundaryValueProblem& problem, const Knots& knots, long steps);
 
 }  // namespace carnot

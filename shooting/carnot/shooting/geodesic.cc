@@ -17,13 +17,13 @@
 namespace carnot {
 namespace {
 
-constexpr int kSegments = 8;       // of multiple shooting; divides the intervals of a path
-constexpr long kFirstSteps = 32;   // of the method over [0, T]
-constexpr int kRound = 12;         // starts between two looks at the list
-constexpr int kMaxStarts = 96;     // when the best extremal keeps changing
+constexpr int kSegments = 8;      // of multiple shooting; divides the intervals of a path
+constexpr long kFirstSteps = 32;  // of the method over [0, T]
+constexpr int kRound = 12;        // starts between two looks at the list
+constexpr int kMaxStarts = 96;    // when the best extremal keeps changing
 constexpr int kMaxStartsAll = 240;
-constexpr int kSweeps = 24;        // rounds of near hits, where more than the best is wanted
-constexpr int kEnoughHits = 3;     // of the least action, before a search for it ends
+constexpr int kSweeps = 24;     // rounds of near hits, where more than the best is wanted
+constexpr int kEnoughHits = 3;  // of the least action, before a search for it ends
 constexpr double kSameAction = 1e-9;
 
 // A relaxed path that satisfies the discrete equations, or why there is none.
@@ -43,10 +43,12 @@ class Search {
 
   // Runs rounds of starts until the list is good enough. False when interrupted.
   bool run() {
-    const int limit = options_.starts > 0 ? options_.starts
-                                          : (wants_all() ? kMaxStartsAll : kMaxStarts);
+    const int limit =
+        options_.starts > 0 ? options_.starts : (wants_all() ? kMaxStartsAll : kMaxStarts);
     const int sweeps = wants_all() ? kSweeps : 0;
-    const auto goes_on = [&](double share) { return !options_.progress || options_.progress(share); };
+    const auto goes_on = [&](double share) {
+      return !options_.progress || options_.progress(share);
+    };
     while (starts_ < limit && !settled()) {
       const double share = static_cast<double>(starts_) / limit;
       if (!goes_on(sweeps > 0 ? 0.5 * share : share)) return false;
@@ -248,8 +250,7 @@ class Search {
 // from = to: the path that does not move.
 Extremal constant_path(const BoundaryValueProblem& problem) {
   Extremal extremal;
-  extremal.knots = knots_of(
-      problem, std::vector<double>(problem.segment.dof, 0.0), 1, kFirstSteps);
+  extremal.knots = knots_of(problem, std::vector<double>(problem.segment.dof, 0.0), 1, kFirstSteps);
   extremal.geodesic.p0.assign(problem.segment.dof, 0.0);
   extremal.geodesic.lambda0.assign(problem.segment.multipliers, 0.0);
   extremal.geodesic.length = 0;
@@ -258,8 +259,8 @@ Extremal constant_path(const BoundaryValueProblem& problem) {
 }
 
 std::string failure_message(const Search& search, const GeodesicOptions& options) {
-  const std::string tried = std::to_string(search.starts()) +
-                            (search.starts() == 1 ? " start" : " starts") + " tried";
+  const std::string tried =
+      std::to_string(search.starts()) + (search.starts() == 1 ? " start" : " starts") + " tried";
   if (!options.guess.empty()) {
     return "the guess did not lead to an extremal: leave --guess out to search from paths";
   }
@@ -292,8 +293,7 @@ void GeodesicOptions::validate(const BoundaryValueProblem& problem) const {
               std::to_string(problem.segment.dof));
 }
 
-GeodesicReport find_geodesics(const BoundaryValueProblem& problem,
-                              const GeodesicOptions& options) {
+GeodesicReport find_geodesics(const BoundaryValueProblem& problem, const GeodesicOptions& options) {
   problem.validate();
   options.validate(problem);
   const auto began = std::chrono::steady_clock::now();

@@ -34,8 +34,7 @@ Knots knots_of(const BoundaryValueProblem& problem,
 
 StepPlan knot_plan(const BoundaryValueProblem& problem, int segments, int i, long steps) {
   const double duration = problem.time / segments;
-  return StepPlan::equal(
-      i * duration, duration, std::max(1L, (steps + segments - 1) / segments));
+  return StepPlan::equal(i * duration, duration, std::max(1L, (steps + segments - 1) / segments));
 }
 
 }  // namespace carnot

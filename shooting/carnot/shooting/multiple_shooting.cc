@@ -2,9 +2,7 @@
 
 namespace carnot {
 
-std::vector<std::string> minimisers() {
-  return {"ceres", "nlopt", "nlopt:slsqp"};
-}
+std::vector<std::string> minimisers() { return {"ceres", "nlopt", "nlopt:slsqp"}; }
 
 Shooting shoot(const BoundaryValueProblem& problem, const ShootingOptions& options, Knots& knots) {
   return options.minimiser == "ceres" ? shoot_with_ceres(problem, options, knots)

@@ -11,7 +11,7 @@ namespace carnot {
 struct Path {
   int intervals = 0;
   int dof = 0;
-  std::vector<double> q;  // (intervals + 1) x n
+  std::vector<double> q;       // (intervals + 1) x n
   std::vector<double> lambda;  // intervals x k, of the midpoint rule
   std::vector<double> p;       // (intervals + 1) x n, discrete momenta; filled by a relaxation
 
@@ -22,8 +22,8 @@ struct Path {
   [[nodiscard]] const double* momentum(int i) const { return p.data() + i * dof; }
 };
 
-// Sets path.p from path.q and path.lambda: at each node the mean of what the intervals on both sides
-// say, D2 F_d and -D1 F_d. They agree on a discrete extremal.
+// Sets path.p from path.q and path.lambda: at each node the mean of what the intervals on both
+// sides say, D2 F_d and -D1 F_d. They agree on a discrete extremal.
 void fill_momenta(const Segment& segment, double h, Path& path);
 
 }  // namespace carnot

@@ -85,7 +85,7 @@ struct Survey {
   double action = 0;
   double violation = 0;
   double max_potential = 0;
-  double mass = 0;        // mean |r|^2 / |v|^2
+  double mass = 0;  // mean |r|^2 / |v|^2
   bool potential = false;
   std::vector<double> constraint;  // intervals x k
 };
@@ -151,6 +151,9 @@ Relaxation relax(const BoundaryValueProblem& problem,
   path.lambda.assign(static_cast<std::size_t>(path.intervals) * segment.multipliers, 0.0);
   std::vector<double>& lambda = path.lambda;
 
+  Relaxation result;
+  // Ceres would log an error where the first evaluation fails; a library must not print.
+  if (state.constraint.size() != lambda.size() || !std::isfinite(state.action)) return result;
   ceres::Problem::Options ownership;
   ownership.enable_fast_removal = false;
   ceres::Problem least_squares(ownership);
@@ -163,7 +166,6 @@ Relaxation relax(const BoundaryValueProblem& problem,
   least_squares.SetParameterBlockConstant(path.configuration(0));
   least_squares.SetParameterBlockConstant(path.configuration(path.intervals));
 
-  Relaxation result;
   for (int outer = 0; outer < options.outer_iterations; ++outer) {
     ceres::Solver::Summary summary;
     ceres::Solve(inner_options(options), &least_squares, &summary);

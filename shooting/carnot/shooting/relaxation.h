@@ -17,10 +17,10 @@
 namespace carnot {
 
 struct RelaxationOptions {
-  int outer_iterations = 8;    // updates of the multipliers
-  int inner_iterations = 12;   // Ceres iterations between two of them
-  double penalty = 10;         // rho relative to the mass
-  double feasibility = 1e-3;   // |G v| / |v| at which to stop
+  int outer_iterations = 8;   // updates of the multipliers
+  int inner_iterations = 12;  // Ceres iterations between two of them
+  double penalty = 10;        // rho relative to the mass
+  double feasibility = 1e-3;  // |G v| / |v| at which to stop
 };
 
 struct Relaxation {
@@ -31,8 +31,6 @@ struct Relaxation {
 };
 
 // Relaxes `path` in place and fills its momenta. The ends stay fixed.
-Relaxation relax(const BoundaryValueProblem& problem,
-                 const RelaxationOptions& options,
-                 Path& path);
+Relaxation relax(const BoundaryValueProblem& problem, const RelaxationOptions& options, Path& path);
 
 }  // namespace carnot

@@ -32,9 +32,9 @@ bool ShootingEquations::evaluate(
   const StepPlan plan = knot_plan(problem_, segments_, i, steps_);
   std::vector<double> end(z, z + size);
   std::vector<double> tangent(jacobian != nullptr ? size * size : 0);
-  const FlowReport report =
-      jacobian != nullptr ? problem_.segment.tangent_flow(plan, end.data(), tangent.data())
-                          : problem_.segment.flow(plan, end.data());
+  const FlowReport report = jacobian != nullptr
+                                ? problem_.segment.tangent_flow(plan, end.data(), tangent.data())
+                                : problem_.segment.flow(plan, end.data());
   if (!report.completed()) return false;
   const double* wanted = last ? problem_.to.data() : next;
   for (int row = 0; row < residuals(i); ++row) {
@@ -50,8 +50,7 @@ bool ShootingEquations::evaluate(
 bool ShootingEquations::complete(Knots& knots) const {
   const int last = segments_ - 1;
   std::copy(knots.at(last), knots.at(last) + 2 * dof_, knots.at(segments_));
-  return problem_.segment
-      .flow(knot_plan(problem_, segments_, last, steps_), knots.at(segments_))
+  return problem_.segment.flow(knot_plan(problem_, segments_, last, steps_), knots.at(segments_))
       .completed();
 }
 

@@ -1,9 +1,9 @@
 // Paths to start a relaxation from.
 //
 // Straight line plus a wiggle, sum_m a_m sin(m pi s) in every coordinate. Every fourth start
-// is designed while there are any left: the first mode in one coordinate, the second in another, each
-// with either sign. Such a path encloses area in the plane of the two, which is how brackets of the
-// admissible directions are made; a change of sign is its mirror image. The rest are random
+// is designed while there are any left: the first mode in one coordinate, the second in another,
+// each with either sign. Such a path encloses area in the plane of the two, which is how brackets
+// of the admissible directions are made; a change of sign is its mirror image. The rest are random
 // combinations, each from its own generator, so that start i is the same whatever else is computed.
 // Nothing depends on where the origin is.
 //

@@ -11,8 +11,8 @@
 namespace carnot {
 namespace {
 
-constexpr long kSteps = 16;      // enough to see where a trajectory goes
-constexpr int kIntervals = 64;   // of the paths made
+constexpr long kSteps = 16;     // enough to see where a trajectory goes
+constexpr int kIntervals = 64;  // of the paths made
 
 struct Draw {
   std::vector<double> p;
@@ -95,9 +95,8 @@ std::vector<Path> near_hits(const BoundaryValueProblem& problem,
                             int threads) {
   std::vector<Draw> draws(options.flows);
   parallel_for(options.flows, threads, [&](int i) { draws[i] = draw(problem, options, i); });
-  std::stable_sort(draws.begin(), draws.end(), [](const Draw& a, const Draw& b) {
-    return a.miss < b.miss;
-  });
+  std::stable_sort(
+      draws.begin(), draws.end(), [](const Draw& a, const Draw& b) { return a.miss < b.miss; });
   const auto kept = std::min<std::size_t>(options.keep, draws.size());
   std::vector<Path> paths;
   for (std::size_t i = 0; i < kept && std::isfinite(draws[i].miss); ++i) {

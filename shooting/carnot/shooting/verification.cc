@@ -100,8 +100,10 @@ double correct(const BoundaryValueProblem& problem, long steps, std::vector<doub
 }
 
 // Times of [0, T], `samples` in all, that belong to segment i: [t_i, t_{i+1}), the last one closed.
-std::vector<double> times_of_segment(
-    const BoundaryValueProblem& problem, int segments, int i, long samples) {
+std::vector<double> times_of_segment(const BoundaryValueProblem& problem,
+                                     int segments,
+                                     int i,
+                                     long samples) {
   const StepPlan whole = StepPlan::equal(0, problem.time, 1);
   std::vector<double> times;
   const double start = problem.time * i / segments;
@@ -233,9 +235,8 @@ void complete(const BoundaryValueProblem& problem, long samples, Extremal& extre
   const ConjugateTimes conjugate = conjugate_times(problem, extremal.knots, steps / 2);
   if (!conjugate.known) return;
   geodesic.conjugate_times = conjugate.times;
-  const auto inner = std::count_if(conjugate.times.begin(), conjugate.times.end(), [&](double t) {
-    return t < problem.time;
-  });
+  const auto inner = std::count_if(
+      conjugate.times.begin(), conjugate.times.end(), [&](double t) { return t < problem.time; });
   geodesic.morse_index = static_cast<int>(inner);
   if (inner > 0) geodesic.label = Label::kConjugatePassed;
   if (conjugate.times.empty()) geodesic.label = Label::kLocallyMinimal;

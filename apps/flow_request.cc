@@ -1,0 +1,119 @@
+#include "flow_request.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "numbers.h"
+#include "scene_choice.h"
+
+namespace carnot::apps {
+namespace {
+
+constexpr long kMostSteps = 1000000000000;
+constexpr double kVelocityTolerance = 1e-9;
+
+// p of a velocity that satisfies the constraints at q.
+std::vector<double> momentum_of(const Segment& segment,
+                                const std::vector<double>& q,
+                                std::vector<double> velocity,
+                                const std::vector<double>& lambda,
+                                const std::string& text) {
+  const auto larger = [](double a, double b) { return std::abs(a) < std::abs(b); };
+  const double size = std::abs(*std::max_element(velocity.begin(), velocity.end(), larger));
+  std::vector<double> unit = velocity;  // its squares neither overflow nor vanish
+  for (double& v : unit) v = size > 0 ? v / size : 0;
+  std::vector<double> p(q.size());
+  const double residual = segment.momentum(q.data(), unit.data(), lambda.data(), p.data());
+  if (!(residual <= kVelocityTolerance)) {
+    refuse(
+        "--velocity",
+        text,
+        fmt::format("it violates the constraints at --from, residual |G v|/|v| = {:.3g}", residual),
+        fmt::format("a velocity with residual <= {:g}", kVelocityTolerance));
+  }
+  segment.momentum(q.data(), velocity.data(), lambda.data(), p.data());
+  if (!std::all_of(p.begin(), p.end(), [](double x) { return std::isfinite(x); })) {
+    refuse("--velocity",
+           text,
+           "its momentum is not finite",
+           "a velocity where the constraints are independent");
+  }
+  return p;
+}
+
+std::vector<double> parse_momentum(const FlowOptions& options,
+                                   const SceneEntry& entry,
+                                   const Segment& segment,
+                                   const std::vector<double>& q) {
+  const auto names = coordinate_names(entry);
+  if (!options.momentum.empty() && !options.velocity.empty()) {
+    refuse("--velocity", options.velocity, "given besides --momentum", "one of the two");
+  }
+  if (!options.lambda.empty() && options.velocity.empty()) {
+    refuse("--lambda", options.lambda, "given without --velocity", "--lambda with --velocity only");
+  }
+  if (!options.momentum.empty()) return parse_vector("--momentum", options.momentum, names);
+  if (options.velocity.empty()) {
+    refuse_missing("--momentum", "--momentum P0 or --velocity V0, " + vector_accepted(names));
+  }
+  std::vector<double> lambda(segment.multipliers, 0.0);
+  if (!options.lambda.empty()) {
+    lambda =
+        parse_vector("--lambda", options.lambda, numbered_names("lambda_", segment.multipliers));
+  }
+  const auto velocity = parse_vector("--velocity", options.velocity, names);
+  return momentum_of(segment, q, velocity, lambda, options.velocity);
+}
+
+void parse_steps(const FlowOptions& options, FlowRequest& request) {
+  constexpr const char* kAccepted = "exactly one of --step H, --steps N and --tolerance TOL";
+  std::vector<std::pair<const char*, std::string>> given;
+  if (!options.step.empty()) given.emplace_back("--step", options.step);
+  if (!options.steps.empty()) given.emplace_back("--steps", options.steps);
+  if (!options.tolerance.empty()) given.emplace_back("--tolerance", options.tolerance);
+  if (given.empty()) refuse_missing("--steps", kAccepted);
+  if (given.size() > 1) {
+    refuse(
+        given[1].first, given[1].second, std::string("given besides ") + given[0].first, kAccepted);
+  }
+  if (!options.step.empty()) {
+    const double step = parse_positive("--step", options.step);
+    if (!(request.time / step <= static_cast<double>(kMostSteps))) {
+      refuse(
+          "--step", options.step, "too short", fmt::format("--time / {}", kMostSteps) + " or more");
+    }
+    request.plan = StepPlan::of_length(request.start_time, request.time, step);
+  } else if (!options.steps.empty()) {
+    const long count = parse_integer("--steps", options.steps, 1, kMostSteps);
+    request.plan = StepPlan::equal(request.start_time, request.time, count);
+  } else {
+    request.tolerance = parse_tolerance("--tolerance", options.tolerance);
+  }
+}
+
+}  // namespace
+
+FlowRequest check(const FlowOptions& options) {
+  FlowRequest request;
+  request.run = check(options.run);
+  const SceneEntry& entry = *request.run.entry;
+  const auto names = coordinate_names(entry);
+  if (options.from.empty()) refuse_missing("--from", vector_accepted(names));
+  request.z = parse_vector("--from", options.from, names);
+  const auto p = parse_momentum(options, entry, request.run.segment, request.z);
+  request.z.insert(request.z.end(), p.begin(), p.end());
+  if (options.time.empty()) refuse_missing("--time", "a finite number > 0");
+  request.time = parse_positive("--time", options.time);
+  request.start_time = parse_real("--start-time", options.start_time);
+  if (!std::isfinite(request.start_time + request.time)) {
+    refuse("--time", options.time, "it ends at infinity", "--start-time + --time finite");
+  }
+  parse_steps(options, request);
+  request.tangent = options.tangent;
+  return request;
+}
+
+}  // namespace carnot::apps

@@ -1,0 +1,151 @@
+#include "flow_result.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "carnot/plots/figure.h"
+#include "csv_text.h"
+#include "text_table.h"
+
+namespace carnot::apps {
+namespace {
+
+struct EndPoint {
+  std::vector<double> q;
+  std::vector<double> p;
+  std::vector<double> lambda;
+  double hamiltonian = 0;
+};
+
+EndPoint end_point(const FlowRequest& request, const FlowOutcome& outcome) {
+  const Segment& segment = request.run.segment;
+  EndPoint end;
+  end.q.assign(outcome.z.begin(), outcome.z.begin() + segment.dof);
+  end.p.assign(outcome.z.begin() + segment.dof, outcome.z.end());
+  end.lambda.assign(segment.multipliers, std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> q_dot(segment.dof);
+  end.hamiltonian = segment
+                        .evaluate(outcome.summary.report.time_reached,
+                                  end.q.data(),
+                                  end.p.data(),
+                                  q_dot.data(),
+                                  end.lambda.data())
+                        .hamiltonian;
+  return end;
+}
+
+// Values of the quantities that the scene calls worth reporting.
+std::vector<std::pair<std::string, double>> extremes(const SceneInfo& info,
+                                                     const Trajectory& trajectory) {
+  std::vector<std::pair<std::string, double>> values;
+  for (const Extreme& extreme : info.extremes) {
+    double largest = 0;
+    for (const auto& q : trajectory.q) {
+      largest = std::max(largest, std::abs(extreme.value(q.data())));
+    }
+    values.emplace_back(extreme.name, largest);
+  }
+  return values;
+}
+
+Json matrix_json(const std::vector<double>& m, int size) {
+  Json rows = Json::array();
+  for (int i = 0; i < size; ++i) {
+    rows.push_back(std::vector<double>(m.begin() + i * size, m.begin() + (i + 1) * size));
+  }
+  return rows;
+}
+
+Json flow_json(const FlowRequest& request,
+               const FlowOutcome& outcome,
+               const std::vector<std::string>& arguments) {
+  const Run& run = request.run;
+  const EndPoint end = end_point(request, outcome);
+  Json json = result_head(arguments);
+  json["scene"] = run.entry->info.name;
+  json["parameters"] = parameters_json(run);
+  json["method"] = run.method.name;
+  json["time"] = request.time;
+  json["step"] = outcome.plan.count > 0 ? Json(outcome.plan.step) : Json(nullptr);
+  json["steps"] = outcome.summary.report.steps;
+  json["status"] = outcome.completed() ? "completed" : "failed";
+  json["message"] = outcome.message;
+  json["time_reached"] = outcome.summary.report.time_reached;
+  json["q"] = end.q;
+  json["p"] = end.p;
+  json["lambda"] = end.lambda;
+  json["hamiltonian"] = end.hamiltonian;
+  json["energy_drift"] = outcome.summary.energy_drift;
+  json["constraint_error"] = outcome.summary.constraint_error;
+  json["evaluations"] = outcome.summary.report.evaluations;
+  json["elapsed_seconds"] = outcome.elapsed_seconds;
+  if (!run.no_trajectory) json["trajectory"] = trajectory_json(outcome.summary.trajectory);
+  if (outcome.tangent) {
+    json["tangent"] = matrix_json(outcome.tangent->m, 2 * run.segment.dof);
+    json["symplecticity_defect"] = outcome.tangent->defect;
+    json["symplecticity_defect_relative"] = outcome.tangent->relative_defect;
+  }
+  return json;
+}
+
+std::string flow_text(const FlowRequest& request, const FlowOutcome& outcome) {
+  const Run& run = request.run;
+  const FlowReport& report = outcome.summary.report;
+  const EndPoint end = end_point(request, outcome);
+  std::string title = fmt::format("{}: {} steps of {} to t = {:g}, {}\n\n",
+                                  run.entry->info.name,
+                                  report.steps,
+                                  run.method.name,
+                                  report.time_reached,
+                                  outcome.completed() ? "completed" : "failed");
+  constexpr int kDigits = 15;
+  std::vector<std::vector<std::string>> rows{
+      {"q", text_vector(end.q, kDigits)},
+      {"p", text_vector(end.p, kDigits)},
+      {"lambda", text_vector(end.lambda, kDigits)},
+      {"hamiltonian", text_number(end.hamiltonian, kDigits)},
+      {"energy drift", text_number(outcome.summary.energy_drift, 3)},
+      {"constraint error", text_number(outcome.summary.constraint_error, 3)},
+      {"action", text_number(outcome.summary.action, kDigits)},
+      {"step", text_number(outcome.plan.step)},
+      {"evaluations", std::to_string(report.evaluations)},
+      {"seconds", text_number(outcome.elapsed_seconds, 3)}};
+  if (outcome.tangent) {
+    rows.push_back({"symplecticity defect", text_number(outcome.tangent->defect, 3)});
+    rows.push_back({"  relative", text_number(outcome.tangent->relative_defect, 3)});
+  }
+  for (const std::string& file : {run.destination.plot, run.destination.output}) {
+    if (outcome.completed() && !file.empty()) rows.push_back({"written", file});
+  }
+  return title + text_table(rows);
+}
+
+}  // namespace
+
+Result flow_result(const FlowRequest& request,
+                   const FlowOutcome& outcome,
+                   const std::vector<std::string>& arguments) {
+  const Segment& segment = request.run.segment;
+  Result result;
+  result.delivered = outcome.completed();
+  result.message = "the flow failed: " + outcome.message;
+  result.json = flow_json(request, outcome, arguments);
+  result.text = [&] { return flow_text(request, outcome); };
+  result.csv = [&] {
+    return csv_text(segment.info, segment.multipliers, {&outcome.summary.trajectory});
+  };
+  result.draw = [&](const std::string& file) {
+    const FlowSummary& summary = outcome.summary;
+    return plots::write_figure(file,
+                               segment.info,
+                               {{"flow",
+                                 &summary.trajectory,
+                                 summary.action,
+                                 summary.length,
+                                 extremes(segment.info, summary.trajectory)}});
+  };
+  return result;
+}
+
+}  // namespace carnot::apps

@@ -1,0 +1,179 @@
+#include "geodesic_result.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "carnot/plots/figure.h"
+#include "csv_text.h"
+#include "text_table.h"
+
+namespace carnot::apps {
+namespace {
+
+const char* name_of(Label label) {
+  switch (label) {
+    case Label::kLocallyMinimal:
+      return "locally-minimal";
+    case Label::kConjugatePassed:
+      return "conjugate-passed";
+    case Label::kSingular:
+      return "singular";
+    case Label::kUnknown:
+      return "unknown";
+  }
+  return "unknown";
+}
+
+Json geodesic_json(const Geodesic& geodesic, std::size_t rank, bool with_trajectory) {
+  const bool single = geodesic.verification == Verification::kSingle;
+  Json json;
+  json["p0"] = geodesic.p0;
+  json["lambda0"] = geodesic.lambda0;
+  json["action"] = geodesic.action;
+  json["length"] = or_null(geodesic.length);
+  json["verification"] = single ? "single" : "knots";
+  json["endpoint_error"] = single ? Json(geodesic.endpoint_error) : Json(nullptr);
+  json["knot_defect"] = single ? Json(nullptr) : Json(geodesic.knot_defect);
+  json["constraint_error"] = geodesic.constraint_error;
+  json["energy_drift"] = geodesic.energy_drift;
+  json["conjugate_times"] = or_null(geodesic.conjugate_times);
+  json["label"] = name_of(geodesic.label);
+  json["abnormal"] = or_null(geodesic.abnormal);
+  json["morse_index"] = or_null(geodesic.morse_index);
+  json["family_dimension"] = or_null(geodesic.family_dimension);
+  json["rank_in_list"] = rank;
+  for (const auto& [name, value] : geodesic.extremes) json[name] = value;
+  if (with_trajectory) json["trajectory"] = trajectory_json(geodesic.trajectory);
+  return json;
+}
+
+Json report_json(const GeodesicRequest& request,
+                 const GeodesicReport& report,
+                 const std::vector<std::string>& arguments) {
+  const Run& run = request.run;
+  Json geodesics = Json::array();
+  for (const Geodesic& geodesic : report.geodesics) {
+    geodesics.push_back(geodesic_json(geodesic, geodesics.size() + 1, !run.no_trajectory));
+  }
+  Json json = result_head(arguments);
+  json["scene"] = run.entry->info.name;
+  json["parameters"] = parameters_json(run);
+  json["from"] = request.from;
+  json["to"] = request.to;
+  json["time"] = request.time;
+  json["method"] = run.method.name;
+  json["status"] = report.status == GeodesicStatus::kConverged ? "converged" : "not_converged";
+  json["message"] = report.message;
+  json["geodesics"] = std::move(geodesics);
+  json["starts"] = report.starts;
+  json["converged_starts"] = report.converged_starts;
+  json["elapsed_seconds"] = report.elapsed_seconds;
+  return json;
+}
+
+// "largest_steering_angle" as a column of a table for people.
+std::string column_title(const Extreme& extreme) {
+  std::string title = extreme.name;
+  std::replace(title.begin(), title.end(), '_', ' ');
+  return extreme.unit.empty() ? title : title + " [" + extreme.unit + "]";
+}
+
+std::vector<std::string> header_row(const SceneInfo& info) {
+  std::vector<std::string> row{"#", "action", "length", "error", "label"};
+  for (const Extreme& extreme : info.extremes) row.push_back(column_title(extreme));
+  row.emplace_back("p0");
+  return row;
+}
+
+std::vector<std::string> geodesic_row(const Geodesic& geodesic,
+                                      const SceneInfo& info,
+                                      std::size_t rank) {
+  const bool single = geodesic.verification == Verification::kSingle;
+  const double error = single ? geodesic.endpoint_error : geodesic.knot_defect;
+  std::vector<std::string> row{std::to_string(rank),
+                               text_number(geodesic.action, 10),
+                               geodesic.length ? text_number(*geodesic.length, 10) : "-",
+                               text_number(error, 2) + (single ? "" : " (knots)"),
+                               name_of(geodesic.label)};
+  for (const Extreme& extreme : info.extremes) {
+    std::string text = "-";
+    for (const auto& [name, value] : geodesic.extremes) {
+      if (name == extreme.name) text = text_number(value);
+    }
+    row.push_back(text);
+  }
+  row.push_back(text_vector(geodesic.p0, 8));
+  return row;
+}
+
+std::string table(const GeodesicReport& report, const SceneInfo& info) {
+  constexpr std::size_t kMostRows = 50;
+  const std::size_t found = report.geodesics.size();
+  std::vector<std::vector<std::string>> rows{header_row(info)};
+  for (std::size_t i = 0; i < std::min(found, kMostRows); ++i) {
+    rows.push_back(geodesic_row(report.geodesics[i], info, i + 1));
+  }
+  const std::string text = text_table(rows);
+  return found > kMostRows ? text + fmt::format("... {} more (see --json)\n", found - kMostRows)
+                           : text;
+}
+
+std::string report_text(const GeodesicRequest& request, const GeodesicReport& report) {
+  const Run& run = request.run;
+  const std::size_t found = report.geodesics.size();
+  std::string text = fmt::format("{}: {} geodesic{} from {} to {} in time {:g}\n",
+                                 run.entry->info.name,
+                                 found,
+                                 found == 1 ? "" : "s",
+                                 text_vector(request.from),
+                                 text_vector(request.to),
+                                 request.time);
+  if (found > 0) text += '\n' + table(report, run.entry->info) + '\n';
+  text += fmt::format("{} of {} starts converged, {}, {:.3g} s\n",
+                      report.converged_starts,
+                      report.starts,
+                      run.method.name,
+                      report.elapsed_seconds);
+  if (!report.message.empty()) text += report.message + '\n';
+  for (const std::string& file : {run.destination.plot, run.destination.output}) {
+    if (found > 0 && !file.empty()) text += "written: " + file + '\n';
+  }
+  return text;
+}
+
+std::vector<plots::Curve> curves(const GeodesicReport& report) {
+  std::vector<plots::Curve> curves;
+  for (const Geodesic& geodesic : report.geodesics) {
+    curves.push_back({fmt::format("geodesic {}", curves.size() + 1),
+                      &geodesic.trajectory,
+                      geodesic.action,
+                      geodesic.length,
+                      geodesic.extremes});
+  }
+  return curves;
+}
+
+}  // namespace
+
+Result geodesic_result(const GeodesicRequest& request,
+                       const GeodesicReport& report,
+                       const std::vector<std::string>& arguments) {
+  const Segment& segment = request.run.segment;
+  Result result;
+  result.delivered = report.status == GeodesicStatus::kConverged && !report.geodesics.empty();
+  result.message = "no geodesic was found: " + report.message;
+  result.json = report_json(request, report, arguments);
+  result.text = [&] { return report_text(request, report); };
+  result.csv = [&] {
+    std::vector<const Trajectory*> trajectories;
+    for (const Geodesic& geodesic : report.geodesics) trajectories.push_back(&geodesic.trajectory);
+    return csv_text(segment.info, segment.multipliers, trajectories);
+  };
+  result.draw = [&](const std::string& file) {
+    return plots::write_figure(file, segment.info, curves(report));
+  };
+  return result;
+}
+
+}  // namespace carnot::apps

@@ -1,0 +1,27 @@
+// Ctrl-C and SIGTERM: the first asks the work to stop, a later one ends the process.
+//
+// Later means half a second: timeout(1) sends its signal to the process and at once to its group.
+// Work polls interrupted() in its progress callback and returns; main then exits with 130. While a
+// file is being written the signals wait, so that no half of it stays behind.
+#pragma once
+
+#include <csignal>
+
+namespace carnot::apps {
+
+void watch_for_interrupts();
+[[nodiscard]] bool interrupted();
+
+// Holds the signals back as long as it lives.
+class InterruptsBlocked {
+ public:
+  InterruptsBlocked();
+  ~InterruptsBlocked();
+  InterruptsBlocked(const InterruptsBlocked&) = delete;
+  InterruptsBlocked& operator=(const InterruptsBlocked&) = delete;
+
+ private:
+  sigset_t before_;
+};
+
+}  // namespace carnot::apps

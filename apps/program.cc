@@ -1,0 +1,136 @@
+#include "program.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <iostream>
+#include <stdexcept>
+
+#include "arguments.h"
+#include "delivery.h"
+#include "interrupt.h"
+#include "nearest.h"
+#include "numbers.h"
+#include "subcommands.h"
+#include "version.h"
+
+namespace carnot::apps {
+namespace {
+
+constexpr const char* kFooter = R"(
+Examples
+  carnot geodesic vehicle --from 0,0,0,0 --to 0,1,0,0 --plot parking.png
+  carnot flow heisenberg --from 0,0,0 --momentum 0.1,0.3,1 --time 100 --tolerance 1e-10 --json
+  carnot scenes vehicle
+  carnot SUBCOMMAND --help
+
+Results go to stdout, messages and the progress bar to stderr. Vectors are comma-separated in one
+word, angles are radians: --from -3,4,-pi/2,0.
+
+Exit status: 0 success, 1 the numerics did not deliver, 2 bad input, 130 interrupted.)";
+
+std::vector<std::string> subcommand_names(CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* sub : app.get_subcommands({})) names.push_back(sub->get_name());
+  return names;
+}
+
+// All `--name`s of a subcommand.
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+OptionNames classified_options(const CLI::App& app) {
+  OptionNames names;
+  for (const CLI::Option* option : app.get_options()) {
+    const bool flag = option->get_items_expected_max() == 0;
+    for (const std::string& name : option->get_lnames()) {
+      auto& list = flag ? names.flags : name == "set" ? names.repeatable : names.valued;
+      list.push_back("--" + name);
+    }
+  }
+  return names;
+}
+
+// The subcommand that runs; nullptr for --help and --version.
+CLI::App* find_subcommand(CLI::App& app, const std::vector<std::string>& arguments) {
+  const std::vector<std::string> names = subcommand_names(app);
+  const std::string accepted = fmt::format("{} (see carnot --help)", fmt::join(names, ", "));
+  if (arguments.empty()) refuse("SUBCOMMAND", "", "is missing", accepted);
+  const std::string& first = arguments.front();
+  if (first == "-h" || first == "--help" || first == "--version") return nullptr;
+  if (std::find(names.begin(), names.end(), first) == names.end()) {
+    refuse("SUBCOMMAND", first, "no such subcommand" + suggestion(first, names), accepted);
+  }
+  return app.get_subcommand(first);
+}
+
+// What CLI11 could not place: the first of them, with the options there are.
+[[noreturn]] void refuse_extras(const CLI::App& app, const CLI::App* subcommand) {
+  const std::vector<std::string> extras = app.remaining(true);
+  const std::string extra = extras.empty() ? "" : extras.front();
+  if (subcommand == nullptr) refuse("argument", extra, "not expected", "see carnot --help");
+  const std::vector<std::string> known = option_names(*subcommand);
+  const bool option = extra.starts_with('-');
+  const std::string name = extra.substr(0, extra.find('='));
+  refuse(option ? "option" : "argument",
+         extra,
+         option ? "no such option" + suggestion(name, known) : "not expected",
+         fmt::format("{}", fmt::join(known, ", ")));
+}
+
+void build(CLI::App& app, Invocation& invocation) {
+  app.name("carnot");
+  app.set_help_flag("-h,--help", "print this help and exit");
+  app.set_version_flag(
+      "--version", std::string("carnot ") + kVersion, "print the version and exit");
+  app.footer(kFooter);
+  add_geodesic(app, invocation);
+  add_flow(app, invocation);
+  add_scenes(app, invocation);
+  add_methods(app, invocation);
+  app.require_subcommand(0, 1);
+}
+
+int run(const std::vector<std::string>& arguments) {
+  Invocation invocation{arguments};
+  CLI::App app("Geodesics of mechanical systems under velocity constraints.");
+  build(app, invocation);
+  const CLI::App* subcommand = find_subcommand(app, arguments);
+  std::vector<std::string> joined =
+      subcommand == nullptr ? arguments : join_values(arguments, classified_options(*subcommand));
+  std::reverse(joined.begin(), joined.end());  // as CLI11 wants them
+  try {
+    app.parse(joined);
+  } catch (const CLI::ExtrasError&) {
+    refuse_extras(app, subcommand);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    throw std::invalid_argument(error.what());
+  }
+  return invocation.exit_status;
+}
+
+}  // namespace
+
+int run_program(const std::vector<std::string>& arguments) {
+  int status = kNotDelivered;
+  try {
+    status = run(arguments);
+  } catch (const std::invalid_argument& error) {
+    complain(error.what());
+    return kBadInput;
+  } catch (const std::exception& error) {
+    if (!interrupted()) complain(error.what());
+  }
+  if (!interrupted() || status == kSuccess) return status;
+  complain("interrupted");
+  return kInterrupted;
+}
+
+}  // namespace carnot::apps

@@ -1,0 +1,94 @@
+#include "run_options.h"
+
+#include <stdexcept>
+
+#include "carnot/plots/plot_file.h"
+#include "numbers.h"
+#include "output_file.h"
+#include "scene_choice.h"
+#include "version.h"
+
+namespace carnot::apps {
+namespace {
+
+constexpr long kMostSamples = 1000000;
+constexpr long kMostThreads = 1024;
+
+void check_destination(const Destination& destination, bool no_trajectory) {
+  const std::string& output = destination.output;
+  if (!output.empty()) check_output_file("--output", output, {".json", ".csv"});
+  if (no_trajectory && has_ending(output, ".csv")) {
+    refuse("--output", output, "--no-trajectory leaves nothing for it", "a name ending in .json");
+  }
+  if (destination.plot.empty()) return;
+  try {
+    plots::validate_plot_file(destination.plot);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(std::string("--plot: ") + error.what());
+  }
+}
+
+}  // namespace
+
+void add_run_options(CLI::App& app, RunOptions& options) {
+  app.add_option("SCENE", options.scene, "a name from `carnot scenes`")->type_name("");
+  app.add_option("--set", options.set, "set a parameter of the scene (repeatable)")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  app.add_option("--method", options.method, "a name from `carnot methods` (default gauss16)")
+      ->type_name("NAME");
+  app.add_option("--samples", options.samples, "times in a trajectory, both ends included (201)")
+      ->type_name("N");
+  app.add_flag("--no-trajectory", options.no_trajectory, "leave trajectories out of the JSON");
+  app.add_option("--seed", options.seed, "fixes all randomness (0)")->type_name("N");
+  app.add_option("--threads", options.threads, "threads; the answer does not depend on it (all)")
+      ->type_name("N");
+  app.add_option("--plot", options.destination.plot, "draw a .png, .svg, .pdf or .gif")
+      ->type_name("FILE");
+  app.add_option("--output", options.destination.output, "write the result as .json or .csv")
+      ->type_name("FILE");
+  app.add_flag("--json", options.destination.json, "print one JSON object");
+  app.add_flag("--quiet", options.destination.quiet, "no progress bar");
+}
+
+void add_table_options(CLI::App& app, Destination& destination) {
+  app.add_option("--output", destination.output, "write the JSON to a .json file")
+      ->type_name("FILE");
+  app.add_flag("--json", destination.json, "print one JSON object");
+  app.add_flag("--quiet", destination.quiet, "no progress bar");
+}
+
+void check_table_output(const Destination& destination) {
+  if (!destination.output.empty()) check_output_file("--output", destination.output, {".json"});
+}
+
+Run check(const RunOptions& options) {
+  Run run;
+  run.entry = &find_scene(options.scene);
+  run.parameters = parse_parameters(*run.entry, options.set);
+  run.method = find_method("--method", options.method);
+  run.samples = parse_integer("--samples", options.samples, 2, kMostSamples);
+  run.seed = parse_seed("--seed", options.seed);
+  if (!options.threads.empty()) {
+    run.threads = static_cast<int>(parse_integer("--threads", options.threads, 1, kMostThreads));
+  }
+  run.no_trajectory = options.no_trajectory;
+  run.destination = options.destination;
+  check_destination(run.destination, run.no_trajectory);
+  run.segment = run.entry->make(run.parameters, run.method.stages);
+  return run;
+}
+
+Json result_head(const std::vector<std::string>& arguments) {
+  return {{"version", kVersion}, {"arguments", arguments}};
+}
+
+Json parameters_json(const Run& run) {
+  Json values = Json::object();
+  for (const ParameterInfo& parameter : run.entry->parameters) {
+    values[parameter.name] = run.parameters.at(parameter.name);
+  }
+  return values;
+}
+
+}  // namespace carnot::apps

@@ -1,0 +1,65 @@
+// Options that every run of a scene takes: scene, parameters, method, where the result goes.
+//
+// CLI11 fills RunOptions with texts; check() turns them into a Run or refuses them, before any
+// work.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "json_text.h"
+#include "method_table.h"
+#include "scene_entry.h"
+
+namespace carnot::apps {
+
+// Where the result goes.
+struct Destination {
+  bool json = false;
+  bool quiet = false;
+  std::string output;  // .json or .csv; empty: none
+  std::string plot;    // empty: none
+};
+
+struct RunOptions {
+  std::string scene;
+  std::vector<std::string> set;
+  std::string method = "gauss16";
+  std::string samples = "201";
+  std::string seed = "0";
+  std::string threads;  // empty: all cores
+  bool no_trajectory = false;
+  Destination destination;
+};
+
+struct Run {
+  const SceneEntry* entry = nullptr;
+  MethodEntry method;
+  ParameterValues parameters;
+  Segment segment;
+  long samples = 0;
+  std::uint64_t seed = 0;
+  int threads = 0;  // 0: all cores
+  bool no_trajectory = false;
+  Destination destination;
+};
+
+// The names of a subcommand's own options come first in its help, then these.
+void add_run_options(CLI::App& app, RunOptions& options);
+
+// For tables: --json, --output (.json only), --quiet.
+void add_table_options(CLI::App& app, Destination& destination);
+void check_table_output(const Destination& destination);
+
+// Throws std::invalid_argument.
+Run check(const RunOptions& options);
+
+// {"version", "arguments"}: how every JSON result begins.
+Json result_head(const std::vector<std::string>& arguments);
+
+// "parameters" of the run, in the scene's own order.
+Json parameters_json(const Run& run);
+
+}  // namespace carnot::apps

@@ -1,0 +1,116 @@
+// carnot scenes: what can be computed, and with which parameters.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "delivery.h"
+#include "scene_choice.h"
+#include "subcommands.h"
+#include "text_table.h"
+
+namespace carnot::apps {
+namespace {
+
+constexpr const char* kFooter = R"(
+Examples
+  carnot scenes
+  carnot scenes vehicle
+  carnot scenes --json
+
+Exit status: 0 success, 1 a file could not be written, 2 bad input, 130 interrupted.)";
+
+struct Options {
+  std::string scene;
+  Destination destination;
+};
+
+Json scene_json(const SceneEntry& entry) {
+  Json periods = Json::object();
+  for (const Coordinate& coordinate : entry.info.configuration) {
+    if (coordinate.period > 0) periods[coordinate.name] = coordinate.period;
+  }
+  Json parameters = Json::array();
+  for (const ParameterInfo& parameter : entry.parameters) {
+    parameters.push_back({{"name", parameter.name},
+                          {"default", parameter.default_value},
+                          {"unit", parameter.unit},
+                          {"range", parameter.range.text()},
+                          {"meaning", parameter.meaning}});
+  }
+  return {{"name", entry.info.name},
+          {"summary", entry.info.summary},
+          {"kind", entry.info.kind},
+          {"configuration", coordinate_names(entry)},
+          {"periods", std::move(periods)},
+          {"multipliers", entry.multipliers},
+          {"parameters", std::move(parameters)},
+          {"reference", entry.info.reference}};
+}
+
+std::string parameter_list(const SceneEntry& entry) {
+  std::string list;
+  for (const ParameterInfo& parameter : entry.parameters) {
+    list +=
+        fmt::format("{}{}={:g}", list.empty() ? "" : " ", parameter.name, parameter.default_value);
+  }
+  return list.empty() ? "-" : list;
+}
+
+std::string overview() {
+  std::vector<std::vector<std::string>> rows{{"scene", "configuration", "parameters", "summary"}};
+  for (const SceneEntry& entry : scene_registry()) {
+    rows.push_back({entry.info.name,
+                    fmt::format("{}", fmt::join(coordinate_names(entry), ", ")),
+                    parameter_list(entry),
+                    entry.info.summary});
+  }
+  return text_table(rows);
+}
+
+std::string details(const SceneEntry& entry) {
+  const SceneInfo& info = entry.info;
+  std::string text = fmt::format("{}: {}\n{}, {} multiplier{}\n",
+                                 info.name,
+                                 info.summary,
+                                 info.kind,
+                                 entry.multipliers,
+                                 entry.multipliers == 1 ? "" : "s");
+  if (!info.reference.empty()) text += info.reference + '\n';
+  std::vector<std::vector<std::string>> coordinates{{"coordinate", "unit", "period"}};
+  for (const Coordinate& c : info.configuration) {
+    coordinates.push_back({c.name, c.unit, c.period > 0 ? text_number(c.period) : "-"});
+  }
+  text += '\n' + text_table(coordinates);
+  if (entry.parameters.empty()) return text + "\nno parameters\n";
+  std::vector<std::vector<std::string>> parameters{
+      {"parameter", "default", "unit", "range", "meaning"}};
+  for (const ParameterInfo& p : entry.parameters) {
+    parameters.push_back({p.name, text_number(p.default_value), p.unit, p.range.text(), p.meaning});
+  }
+  return text + '\n' + text_table(parameters);
+}
+
+}  // namespace
+
+void add_scenes(CLI::App& app, Invocation& invocation) {
+  auto options = std::make_shared<Options>();
+  CLI::App& scenes = *app.add_subcommand("scenes", "List the scenes, or describe one.");
+  scenes.add_option("SCENE", options->scene, "describe only this one")->type_name("");
+  add_table_options(scenes, options->destination);
+  scenes.footer(kFooter);
+  scenes.callback([options, &invocation] {
+    const SceneEntry* one = options->scene.empty() ? nullptr : &find_scene(options->scene);
+    check_table_output(options->destination);
+    Json list = Json::array();
+    for (const SceneEntry& entry : scene_registry()) {
+      if (one == nullptr || one == &entry) list.push_back(scene_json(entry));
+    }
+    Result result;
+    result.json = result_head(invocation.arguments);
+    result.json["scenes"] = std::move(list);
+    result.text = [one] { return one == nullptr ? overview() : details(*one); };
+    invocation.exit_status = deliver(result, options->destination);
+  });
+}
+
+}  // namespace carnot::apps

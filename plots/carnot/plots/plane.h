@@ -1,0 +1,47 @@
+// Pictures in the plane: axes of one scale, the path and the bodies along it as lines.
+#pragma once
+
+#include <vector>
+
+#include "carnot/plots/curve.h"
+#include "carnot/plots/page.h"
+
+namespace carnot::plots {
+
+constexpr std::size_t kBodies = 21;  // drawn along a path
+
+// Which coordinate is drawn on axis 0, 1, 2.
+std::size_t axis_index(const SceneInfo& info, std::size_t axis);
+
+// What the axes of a picture in the plane must hold: the curves and all the bodies drawn.
+struct PlaneExtent {
+  Interval x, y;
+
+  PlaneExtent(const SceneInfo& info, const std::vector<Curve>& curves);
+};
+
+// Axes for the extent, with equal scale in the largest box inside `room`; the box is returned.
+struct PlaneFrame {
+  Axis x, y;
+  Box box;
+
+  PlaneFrame(const PlaneExtent& extent, const Box& room);
+};
+
+// Lines of the bodies of given role at given rows of the trajectory, in drawn coordinates: points
+// (x, y, colour), a gap after each line. `alpha` 0 is opaque.
+Rows body_rows(const SceneInfo& info,
+               const Trajectory& trajectory,
+               const std::vector<std::size_t>& instants,
+               Polyline::Role role,
+               const PlaneFrame& frame,
+               int alpha);
+// Points (x, y, t) of the path.
+Rows path_rows(const SceneInfo& info, const Trajectory& trajectory, const PlaneFrame& frame);
+// Tracks of the wheels that are not at the reference point.
+std::vector<Rows> other_wheels(const SceneInfo& info,
+                               const Trajectory& trajectory,
+                               const PlaneFrame& frame);
+// Axes, labels and grid of a panel in the plane.
+void set_plane(Script& script, const Picture& page, const SceneInfo& info, const PlaneFrame& frame);
+}  // namespace carnot::plots

@@ -1,0 +1,144 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "command.h"
+
+namespace carnot::apps {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+using Words = std::vector<std::string>;
+
+Words parking(const Words& more) {
+  Words words{"geodesic", "vehicle", "--from", "0,0,0,0", "--to", "0,1,0,0"};
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+TEST(GeodesicCommand, KeepsTheContract) {
+  const Outcome outcome = run(parking({"--json", "--samples", "11"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = outcome.json();
+  EXPECT_THAT(keys(json),
+              ElementsAre("version",
+                          "arguments",
+                          "scene",
+                          "parameters",
+                          "from",
+                          "to",
+                          "time",
+                          "method",
+                          "status",
+                          "message",
+                          "geodesics",
+                          "starts",
+                          "converged_starts",
+                          "elapsed_seconds"));
+  EXPECT_EQ(json["status"], "converged");
+  EXPECT_EQ(json["to"].dump(), "[0,1,0,0]");
+  ASSERT_EQ(json["geodesics"].size(), 1);
+  const auto& geodesic = json["geodesics"][0];
+  EXPECT_THAT(keys(geodesic),
+              ElementsAre("p0",
+                          "lambda0",
+                          "action",
+                          "length",
+                          "verification",
+                          "endpoint_error",
+                          "knot_defect",
+                          "constraint_error",
+                          "energy_drift",
+                          "conjugate_times",
+                          "label",
+                          "abnormal",
+                          "morse_index",
+                          "family_dimension",
+                          "rank_in_list",
+                          "largest_steering_angle",
+                          "trajectory"));
+  EXPECT_EQ(geodesic["p0"].size(), 4);
+  EXPECT_EQ(geodesic["lambda0"].size(), 2);
+  EXPECT_EQ(geodesic["verification"], "single");
+  EXPECT_TRUE(geodesic["knot_defect"].is_null());
+  EXPECT_LE(geodesic["endpoint_error"], 1e-10);
+  EXPECT_EQ(geodesic["rank_in_list"], 1);
+  EXPECT_EQ(geodesic["trajectory"]["t"].size(), 11);
+}
+
+// V = 0: action = length^2 / (2 T).
+TEST(GeodesicCommand, ActionAndLengthAgree) {
+  const auto json = run(parking({"--json", "--time", "2"})).json();
+  const auto& geodesic = json["geodesics"][0];
+  const double length = geodesic["length"];
+  EXPECT_NEAR(geodesic["action"].get<double>(), length * length / 4, 1e-8);
+}
+
+TEST(GeodesicCommand, ListsLeastActionFirst) {
+  const auto json = run(parking({"--json", "--count", "3", "--no-trajectory"})).json();
+  double last = 0;
+  for (const auto& geodesic : json["geodesics"]) {
+    EXPECT_GE(geodesic["action"].get<double>(), last - 1e-9);
+    last = geodesic["action"];
+    EXPECT_FALSE(geodesic.contains("trajectory"));
+  }
+  EXPECT_GE(json["geodesics"].size(), 1);
+  EXPECT_LE(json["geodesics"].size(), 3);
+}
+
+TEST(GeodesicCommand, FlowOfItsMomentumArrives) {
+  const auto geodesics = run(parking({"--json"})).json()["geodesics"];
+  std::string p0 = geodesics[0]["p0"].dump();  // "[1.5,...]", shortest digits that read back
+  p0 = p0.substr(1, p0.size() - 2);
+  const auto flow = run({"flow",
+                         "vehicle",
+                         "--from",
+                         "0,0,0,0",
+                         "--momentum",
+                         p0,
+                         "--time",
+                         "1",
+                         "--tolerance",
+                         "1e-12",
+                         "--json"})
+                        .json();
+  const std::vector<double> to{0, 1, 0, 0};
+  for (int i = 0; i < 4; ++i) EXPECT_NEAR(flow["q"][i].get<double>(), to[i], 1e-9);
+}
+
+TEST(GeodesicCommand, WithEqualEndsStays) {
+  const auto json =
+      run({"geodesic", "vehicle", "--from", "1,2,pi/2,0", "--to", "1,2,pi/2,0", "--json"}).json();
+  ASSERT_EQ(json["geodesics"].size(), 1);
+  EXPECT_EQ(json["geodesics"][0]["action"], 0);
+  EXPECT_EQ(json["geodesics"][0]["p0"].dump(), "[0,0,0,0]");
+}
+
+TEST(GeodesicCommand, DoesNotDependOnThreads) {
+  const auto answer = [](const char* threads) {
+    auto json = run(parking({"--json", "--threads", threads, "--seed", "7"})).json();
+    return json["geodesics"].dump();
+  };
+  EXPECT_EQ(answer("1"), answer("3"));
+}
+
+TEST(GeodesicCommand, WritesFiles) {
+  const Sandbox sandbox;
+  const Outcome outcome = sandbox.run(
+      parking({"--count", "2", "--samples", "5", "--output", "a.csv", "--plot", "a.png"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  auto files = sandbox.files();
+  std::sort(files.begin(), files.end());
+  EXPECT_THAT(files, ElementsAre("a.csv", "a.png"));
+  EXPECT_THAT(read_text(sandbox.directory() / "a.csv"), HasSubstr("t,q_x,q_y,q_theta,q_phi,p_x"));
+  EXPECT_THAT(outcome.out, StartsWith("vehicle: "));
+  EXPECT_THAT(outcome.out, HasSubstr("written: a.png"));
+  EXPECT_EQ(outcome.err, "");
+}
+
+}  // namespace
+}  // namespace carnot::apps

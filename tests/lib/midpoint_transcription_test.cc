@@ -1,0 +1,164 @@
+// The midpoint transcription through the calls of a Segment.
+#include "carnot/midpoint_transcription.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "carnot/segment.h"
+#include "testing/runs.h"
+
+namespace carnot {
+namespace {
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+// Central differences of fourth order with step 1e-3: truncation and round-off below 1e-11, times
+// fifth derivatives up to 100.
+constexpr double kStep = 1e-3;
+constexpr double kDifferences = 1e-9;
+
+template <class Scene>
+class MidpointTest : public ::testing::Test {
+ protected:
+  static constexpr int kDof = Scene::kDof;
+  static constexpr int kMultipliers = Scene::kMultipliers;
+  static constexpr int kTerms = kDof + kMultipliers + 1;
+  static constexpr int kUnknowns = 2 * kDof + kMultipliers;
+  using Unknowns = Vector<double, kUnknowns>;
+
+  const VelocityConstraints<Scene> system_{test::uneven<Scene>()};
+  const Segment segment_ = make_gauss_segment<1>(test::uneven<Scene>());
+  test::Generator generator_{1};
+
+  [[nodiscard]] Vector<double, kTerms> terms(const Vector<double, 2 * kDof>& x) const {
+    Vector<double, kTerms> out;
+    EXPECT_TRUE(segment_.midpoint(x.data(), x.data() + kDof, out.data(), nullptr));
+    return out;
+  }
+  [[nodiscard]] Unknowns gradient(double h, const Unknowns& x) const {
+    Unknowns out;
+    segment_.discrete_lagrangian(h, x.data(), out.data(), nullptr);
+    return out;
+  }
+};
+using MidpointScenes =
+    ::testing::Types<scenes::VehicleCosine, scenes::HeisenbergGroup, scenes::Unicycle>;
+TYPED_TEST_SUITE(MidpointTest, MidpointScenes, test::SceneNames);
+
+// Derivative of a vector function along unit vector i.
+template <class F, class X>
+auto difference(const F& f, const X& x, int i) {
+  const auto at = [&](double d) {
+    X shifted = x;
+    shifted[i] += d;
+    return f(shifted);
+  };
+  return ((8 * (at(kStep) - at(-kStep)) - (at(2 * kStep) - at(-2 * kStep))) / (12 * kStep)).eval();
+}
+
+TYPED_TEST(MidpointTest, JacobianAgreesWithDifferences) {
+  constexpr int columns = 2 * TypeParam::kDof;
+  constexpr int rows = TestFixture::kTerms;
+  using RowMajor = Eigen::Matrix<double, rows, columns, Eigen::RowMajor>;
+  for (int sample = 0; sample < 20; ++sample) {
+    const auto x = test::random_vector<columns>(this->generator_, 2);
+    Vector<double, rows> values;
+    RowMajor jacobian;
+    ASSERT_TRUE(this->segment_.midpoint(
+        x.data(), x.data() + TypeParam::kDof, values.data(), jacobian.data()));
+    EXPECT_LE((values - this->terms(x)).cwiseAbs().maxCoeff(), 64 * kEps);
+    for (int i = 0; i < columns; ++i) {
+      const auto column = difference([&](const auto& y) { return this->terms(y); }, x, i);
+      EXPECT_LE((column - jacobian.col(i)).cwiseAbs().maxCoeff(), kDifferences);
+    }
+  }
+}
+
+// |r|^2 = v'M v where G v = 0; c = G v; the last term is V.
+TYPED_TEST(MidpointTest, TermsMakeTheLagrangian) {
+  constexpr int n = TypeParam::kDof;
+  constexpr int k = TypeParam::kMultipliers;
+  for (int sample = 0; sample < 20; ++sample) {
+    auto x = test::random_vector<2 * n>(this->generator_, 2);
+    const Vector<double, n> q = x.template head<n>();
+    Vector<double, n> v = x.template tail<n>();
+    const Vector<double, k> g = this->system_.constraint(q, v);
+    EXPECT_LE((this->terms(x).template segment<k>(n) - g).cwiseAbs().maxCoeff(), 16 * kEps);
+    ASSERT_EQ(this->system_.project(q, v), RateStatus::kOk);
+    x.template tail<n>() = v;
+    const auto terms = this->terms(x);
+    const double lagrangian =
+        0.5 * terms.template head<n>().squaredNorm() - terms[TestFixture::kTerms - 1];
+    EXPECT_NEAR(lagrangian, this->system_.lagrangian(q, v), 256 * kEps);
+  }
+}
+
+// F_d and its derivatives: gradient against the parts of F_d, Hessian against the gradient.
+TYPED_TEST(MidpointTest, HessianAgreesWithDifferencesAndIsSymmetric) {
+  constexpr int size = TestFixture::kUnknowns;
+  constexpr double h = 0.5;
+  using Square = Matrix<double, size, size>;
+  for (int sample = 0; sample < 10; ++sample) {
+    const auto x = test::random_vector<size>(this->generator_);
+    Vector<double, size> slope;
+    Square hessian;
+    this->segment_.discrete_lagrangian(h, x.data(), slope.data(), hessian.data());
+    const double scale = std::max(1.0, hessian.cwiseAbs().maxCoeff());
+    EXPECT_LE((slope - this->gradient(h, x)).cwiseAbs().maxCoeff(), 64 * kEps * scale);
+    EXPECT_LE((hessian - hessian.transpose()).cwiseAbs().maxCoeff(), 64 * kEps * scale);
+    for (int i = 0; i < size; ++i) {
+      const auto column = difference([&](const auto& y) { return this->gradient(h, y); }, x, i);
+      EXPECT_LE((column - hessian.col(i)).cwiseAbs().maxCoeff(), kDifferences * scale);
+    }
+  }
+}
+
+// d F_d / d lambda = -h g(qm, v): the constraints of the transcription.
+TYPED_TEST(MidpointTest, DerivativeByTheMultipliersIsTheConstraint) {
+  constexpr int n = TypeParam::kDof;
+  constexpr int k = TypeParam::kMultipliers;
+  constexpr double h = 0.5;
+  const auto x = test::random_vector<TestFixture::kUnknowns>(this->generator_);
+  const Vector<double, n> q0 = x.template head<n>();
+  const Vector<double, n> q1 = x.template segment<n>(n);
+  const Vector<double, n> qm = 0.5 * (q0 + q1);
+  const Vector<double, n> v = (q1 - q0) / h;
+  const Vector<double, k> g = this->system_.constraint(qm, v);
+  EXPECT_LE((this->gradient(h, x).template tail<k>() + h * g).cwiseAbs().maxCoeff(), 64 * kEps);
+}
+
+// A step of the midpoint rule (Gauss, s = 1) is a stationary interval: p0 = -D1 F_d and
+// p1 = D2 F_d with the multipliers of the midpoint, to round-off.
+TYPED_TEST(MidpointTest, MidpointRuleIsTheDiscreteLegendreTransform) {
+  constexpr int n = TypeParam::kDof;
+  constexpr int k = TypeParam::kMultipliers;
+  using Step = Gauss<VelocityConstraints<TypeParam>, 1>;
+  for (const double h : {0.3, 0.05}) {
+    // v = (q1 - q0) / h magnifies the rounding of q by 1 / h.
+    const double tolerance = 32 * kEps / h;
+    for (int sample = 0; sample < 20; ++sample) {
+      Step step(this->system_);
+      const auto before = test::random_state<n>(this->generator_);
+      auto after = before;
+      ASSERT_EQ(step.step(0, h, after).status, StepStatus::kOk);
+      const Vector<double, n> qm = step.stages().template topRows<n>();
+      const Vector<double, n> pm = step.stages().template bottomRows<n>();
+      const Vector<double, n> v = step.increments().template topRows<n>() / h;
+      Vector<double, k> lambda;
+      ASSERT_EQ(this->system_.multipliers(qm, pm, v, lambda), RateStatus::kOk);
+      Vector<double, 2 * n + k> x;
+      x << before.value.template head<n>(), after.value.template head<n>(), lambda;
+      const auto gradient = this->gradient(h, x);
+      const Vector<double, n> p0 = -gradient.template head<n>();
+      const Vector<double, n> p1 = gradient.template segment<n>(n);
+      EXPECT_LE((p0 - before.value.template tail<n>()).cwiseAbs().maxCoeff(), tolerance);
+      EXPECT_LE((p1 - after.value.template tail<n>()).cwiseAbs().maxCoeff(), tolerance);
+      EXPECT_LE(gradient.template tail<k>().cwiseAbs().maxCoeff(), tolerance);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace carnot

@@ -1,0 +1,248 @@
+#include "carnot/velocity_constraints.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <limits>
+
+#include "testing/random_points.h"
+#include "testing/scene_list.h"
+#include "testing/scene_wrappers.h"
+
+namespace carnot {
+namespace {
+
+using test::Generator;
+using test::random_vector;
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+// Points in [-2, 2]^n, momenta up to 2; two solves with condition numbers up to 100.
+constexpr double kRoundOff = 1000 * kEps;
+constexpr int kSamples = 100;
+
+// Rate, y and multipliers of a system at a point where all must be well.
+template <class System>
+struct Solved {
+  static constexpr int n = System::kDof;
+  Vector<double, System::kAlgebraic> y = Vector<double, System::kAlgebraic>::Zero();
+  Rate<double, n> rate;
+  Vector<double, System::kMultipliers> lambda;
+
+  Solved(const System& system, const Vector<double, n>& q, const Vector<double, n>& p) {
+    EXPECT_EQ(system.rate(0.0, q, p, y, rate), RateStatus::kOk);
+    EXPECT_EQ(system.multipliers(q, p, rate.q_dot, lambda), RateStatus::kOk);
+  }
+};
+
+template <class Scene>
+class VelocityConstraintsTest : public ::testing::Test {
+ protected:
+  static constexpr int n = Scene::kDof;
+  static constexpr int k = Scene::kMultipliers;
+  using Q = Vector<double, n>;
+  using Framed = VelocityConstraints<Scene>;
+  using Plain = VelocityConstraints<test::WithoutFrame<Scene>>;
+  using ByJets = VelocityConstraints<test::WithoutHandDerivatives<Scene>>;
+
+  Framed framed_{test::uneven<Scene>()};
+  Plain plain_{{test::uneven<Scene>()}};
+  ByJets by_jets_{{{test::uneven<Scene>()}}};
+
+  // The hard points by hand, then random ones.
+  template <class Check>
+  void at_all_points(const Check& check) const {
+    Generator generator(11);
+    check(Q(Q::Zero()), Q(Q::Ones()));
+    check(Q(Q::Zero()), Q(Q::Zero()));
+    check(Q(Q::Constant(1e-8)), Q(Q::Constant(-1e-8)));
+    for (int i = 0; i < kSamples; ++i) {
+      const Q q = random_vector<n>(generator, 2);
+      check(q, random_vector<n>(generator, 2));
+    }
+  }
+};
+TYPED_TEST_SUITE(VelocityConstraintsTest, test::Scenes, test::SceneNames);
+
+template <class A, class B>
+double distance(const A& a, const B& b) {
+  return (a - b).cwiseAbs().maxCoeff();
+}
+
+TYPED_TEST(VelocityConstraintsTest, WrappersHideWhatTheySay) {
+  using Bare = test::WithoutFrame<TypeParam>;
+  using JetsOnly = test::WithoutHandDerivatives<TypeParam>;
+  static_assert(HasFrame<TypeParam> && HasFrameGradient<TypeParam>);
+  static_assert(!HasFrame<Bare> && HasFrame<JetsOnly>);
+  static_assert(!HasFrameGradient<JetsOnly> && !HasFrameMass<JetsOnly>);
+  static_assert(HasPotential<Bare> == HasPotential<TypeParam>);
+  static_assert(HasPotential<JetsOnly> == HasPotential<TypeParam>);
+  static_assert(IndexOneSystem<VelocityConstraints<TypeParam>>);
+  static_assert(IndexOneSystem<VelocityConstraints<Bare>>);
+}
+
+TYPED_TEST(VelocityConstraintsTest, FrameRouteAgreesWithMultiplierRoute) {
+  this->at_all_points([&](const auto& q, const auto& p) {
+    const Solved a(this->framed_, q, p);
+    const Solved b(this->plain_, q, p);
+    EXPECT_LE(distance(a.rate.q_dot, b.rate.q_dot), kRoundOff);
+    EXPECT_LE(distance(a.rate.p_dot, b.rate.p_dot), kRoundOff);
+    EXPECT_LE(distance(a.lambda, b.lambda), kRoundOff);
+    EXPECT_NEAR(this->framed_.hamiltonian(0.0, q, p, a.y),
+                this->plain_.hamiltonian(0.0, q, p, b.y),
+                kRoundOff);
+  });
+}
+
+TYPED_TEST(VelocityConstraintsTest, HandDerivativesAgreeWithJets) {
+  this->at_all_points([&](const auto& q, const auto& p) {
+    const Solved a(this->framed_, q, p);
+    const Solved b(this->by_jets_, q, p);
+    EXPECT_LE(distance(a.rate.q_dot, b.rate.q_dot), kRoundOff);
+    EXPECT_LE(distance(a.rate.p_dot, b.rate.p_dot), kRoundOff);
+    EXPECT_LE(distance(a.y, b.y), kRoundOff);
+  });
+}
+
+// The multipliers are part of y on the multiplier route, and separate output on the other.
+TYPED_TEST(VelocityConstraintsTest, AlgebraicVariablesHoldVelocityAndMultipliers) {
+  this->at_all_points([&](const auto& q, const auto& p) {
+    const Solved b(this->plain_, q, p);
+    EXPECT_EQ(b.rate.q_dot, b.y.template head<TypeParam::kDof>());
+    EXPECT_LE(distance(b.lambda, b.y.template tail<TypeParam::kMultipliers>()), kRoundOff);
+  });
+}
+
+TYPED_TEST(VelocityConstraintsTest, FrameSpansTheKernel) {
+  this->at_all_points([&](const auto& q, const auto&) {
+    const auto& scene = this->framed_.scene();
+    const auto b = scene.frame(q);
+    EXPECT_LE((scene.constraints(q) * b).cwiseAbs().maxCoeff(), 8 * kEps);
+    const auto gram = (b.transpose() * b).eval();
+    constexpr int columns = TypeParam::kDof - TypeParam::kMultipliers;
+    EXPECT_TRUE((Cholesky<double, columns>(gram).positive()));
+  });
+}
+
+TYPED_TEST(VelocityConstraintsTest, VelocityIsAdmissibleAndMomentumDecomposes) {
+  this->at_all_points([&](const auto& q, const auto& p) {
+    const Solved a(this->framed_, q, p);
+    EXPECT_LE(this->framed_.constraint(q, a.rate.q_dot).cwiseAbs().maxCoeff(), kRoundOff);
+    EXPECT_LE(distance(this->framed_.momentum(q, a.rate.q_dot, a.lambda), p), kRoundOff);
+  });
+}
+
+// System (8) of the paper: (G M^-1 G') lambda = -G M^-1 p, where M^-1 exists.
+TYPED_TEST(VelocityConstraintsTest, MultipliersSolveThePapersSystem) {
+  using Square = Matrix<double, TypeParam::kDof, TypeParam::kDof>;
+  const Square mass = this->framed_.scene().mass(TestFixture::Q::Zero().eval());
+  if (mass.diagonal().minCoeff() == 0) GTEST_SKIP() << "M is singular";
+  const Square inverse = mass.diagonal().cwiseInverse().asDiagonal();
+  ASSERT_TRUE((mass * inverse).isIdentity(kRoundOff)) << "all scenes have a diagonal M";
+  this->at_all_points([&](const auto& q, const auto& p) {
+    const Solved a(this->framed_, q, p);
+    const auto g = this->framed_.scene().constraints(q);
+    const auto left = (g * inverse * g.transpose() * a.lambda).eval();
+    EXPECT_LE(distance(left, -g * inverse * p), kRoundOff);
+    EXPECT_LE(distance(a.rate.q_dot, inverse * (p + g.transpose() * a.lambda)), kRoundOff);
+  });
+}
+
+// H_y = 0 at the solution, and q' = H_p, p' = -H_q at frozen y: all by Jets from H.
+template <class System, class Q>
+void check_partial_derivatives(const System& system, const Q& q, const Q& p) {
+  constexpr int n = System::kDof;
+  constexpr int m = System::kAlgebraic;
+  const Solved a(system, q, p);
+  const auto by_y = gradient(
+      [&](const auto& y) {
+        using J = Jet<double, m>;
+        return system.hamiltonian(J(0), unseeded<J>(q), unseeded<J>(p), y);
+      },
+      a.y);
+  EXPECT_LE(by_y.cwiseAbs().maxCoeff(), kRoundOff);
+  using J = Jet<double, n>;
+  const auto yj = unseeded<J>(a.y);
+  const auto by_p =
+      gradient([&](const auto& x) { return system.hamiltonian(J(0), unseeded<J>(q), x, yj); }, p);
+  const auto by_q =
+      gradient([&](const auto& x) { return system.hamiltonian(J(0), x, unseeded<J>(p), yj); }, q);
+  EXPECT_LE(distance(by_p, a.rate.q_dot), kRoundOff);
+  EXPECT_LE(distance(by_q, -a.rate.p_dot), kRoundOff);
+}
+
+TYPED_TEST(VelocityConstraintsTest, HamiltonianIsStationaryInY) {
+  this->at_all_points([&](const auto& q, const auto& p) {
+    check_partial_derivatives(this->framed_, q, p);
+    check_partial_derivatives(this->plain_, q, p);
+  });
+}
+
+// The envelope theorem: with y eliminated, H(q, p) has the same derivatives. By central differences
+// of fourth order: truncation d^4 and round-off eps / d are both below 1e-11 at d = 1e-3.
+TYPED_TEST(VelocityConstraintsTest, ReducedHamiltonianHasTheSameDerivatives) {
+  constexpr double kStep = 1e-3;
+  constexpr double kTolerance = 1e-9;  // fifth derivatives of the scenes here are below 1e3
+  const auto reduced = [&](const auto& q, const auto& p) {
+    const Solved a(this->framed_, q, p);
+    return this->framed_.hamiltonian(0.0, q, p, a.y);
+  };
+  const auto derivative = [&](const auto& f) {
+    return (8 * (f(kStep) - f(-kStep)) - (f(2 * kStep) - f(-2 * kStep))) / (12 * kStep);
+  };
+  this->at_all_points([&](const auto& q, const auto& p) {
+    const Solved a(this->framed_, q, p);
+    for (int i = 0; i < TypeParam::kDof; ++i) {
+      const auto e = (TestFixture::Q::Unit(i)).eval();
+      const double by_q = derivative([&](double d) { return reduced((q + d * e).eval(), p); });
+      const double by_p = derivative([&](double d) { return reduced(q, (p + d * e).eval()); });
+      EXPECT_NEAR(by_q, -a.rate.p_dot[i], kTolerance);
+      EXPECT_NEAR(by_p, a.rate.q_dot[i], kTolerance);
+    }
+  });
+}
+
+// H = p.q' - L, and L, speed agree with M.
+TYPED_TEST(VelocityConstraintsTest, LegendreTransform) {
+  this->at_all_points([&](const auto& q, const auto& p) {
+    const Solved a(this->framed_, q, p);
+    const auto& v = a.rate.q_dot;
+    const double h = this->framed_.hamiltonian(0.0, q, p, a.y);
+    EXPECT_NEAR(p.dot(v) - this->framed_.lagrangian(q, v), h, kRoundOff);
+    const double kinetic = h - this->framed_.potential(q);
+    EXPECT_NEAR(std::pow(this->framed_.speed(q, v), 2), 2 * kinetic, kRoundOff);
+  });
+}
+
+// project() is the orthogonal projection on ker G.
+TYPED_TEST(VelocityConstraintsTest, ProjectionIsOrthogonalAndIdempotent) {
+  this->at_all_points([&](const auto& q, const auto& p) {
+    auto v = p;
+    ASSERT_EQ(this->framed_.project(q, v), RateStatus::kOk);
+    EXPECT_LE(this->framed_.constraint(q, v).cwiseAbs().maxCoeff(), kRoundOff);
+    const auto b = this->framed_.scene().frame(q);
+    EXPECT_LE((b.transpose() * (p - v)).cwiseAbs().maxCoeff(), kRoundOff);
+    auto again = v;
+    ASSERT_EQ(this->framed_.project(q, again), RateStatus::kOk);
+    EXPECT_LE(distance(again, v), kRoundOff);
+  });
+}
+
+// p -> M v - G' lambda -> (v, lambda) is the identity: rate() inverts momentum().
+TYPED_TEST(VelocityConstraintsTest, RateInvertsMomentum) {
+  Generator generator(12);
+  for (int i = 0; i < kSamples; ++i) {
+    const auto q = random_vector<TypeParam::kDof>(generator, 2);
+    const auto u = random_vector<TypeParam::kDof - TypeParam::kMultipliers>(generator, 2);
+    const auto lambda = random_vector<TypeParam::kMultipliers>(generator, 2);
+    const auto v = (this->framed_.scene().frame(q) * u).eval();
+    const auto p = this->framed_.momentum(q, v, lambda);
+    const Solved a(this->framed_, q, p);
+    EXPECT_LE(distance(a.rate.q_dot, v), kRoundOff);
+    EXPECT_LE(distance(a.y, u), kRoundOff);
+    EXPECT_LE(distance(a.lambda, lambda), kRoundOff);
+  }
+}
+
+}  // namespace
+}  // namespace carnot

@@ -1,0 +1,69 @@
+#include "carnot/shooting/conjugate_times.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "shooting/problems.h"
+
+namespace carnot {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kTolerance = 1e-11;  // the bisection stops at 1e-13 of t
+
+ConjugateTimes times_of(const BoundaryValueProblem& problem,
+                        const std::vector<double>& p0,
+                        int segments) {
+  constexpr long kSteps = 32;
+  return conjugate_times(problem, knots_of(problem, p0, segments, kSteps), kSteps);
+}
+
+// Arcs of circles: conjugate after each full turn and, in between, where tan(w t/2) = w t/2.
+TEST(ConjugateTimes, HeisenbergGroupInClosedForm) {
+  const double w = 15;
+  const BoundaryValueProblem problem = test::heisenberg_group({1, 0, 1});
+  const double tangent_root = 4.493409457909064;  // tan x = x
+  for (const int segments : {1, 4}) {
+    const ConjugateTimes result = times_of(problem, {1, 0.5, w}, segments);
+    ASSERT_TRUE(result.known);
+    ASSERT_EQ(result.times.size(), 3U);
+    EXPECT_NEAR(result.times[0], 2 * kPi / w, kTolerance);
+    EXPECT_NEAR(result.times[1], 2 * tangent_root / w, kTolerance);
+    EXPECT_NEAR(result.times[2], 4 * kPi / w, kTolerance);
+  }
+}
+
+TEST(ConjugateTimes, NoneOnAShortArc) {
+  const ConjugateTimes result = times_of(test::heisenberg_group({1, 0, 1}), {1, 0.5, 5}, 1);
+  EXPECT_TRUE(result.known);
+  EXPECT_TRUE(result.times.empty());
+}
+
+// Even multiplicity, which the sign of det dq/dp0 does not see.
+TEST(ConjugateTimes, CountsMultiplicity) {
+  const ConjugateTimes result = times_of(test::oscillator({0, 0}, {1, 0}, 4), {1, 0.3}, 1);
+  ASSERT_TRUE(result.known);
+  ASSERT_EQ(result.times.size(), 2U);
+  EXPECT_NEAR(result.times[0], kPi, 10 * kTolerance);
+  EXPECT_NEAR(result.times[1], kPi, 10 * kTolerance);
+}
+
+// Checked with the determinant of the tangent flow, which changes its sign at 0.970521975.
+TEST(ConjugateTimes, MirrorPartnerOfSidewaysParking) {
+  const ConjugateTimes result = times_of(
+      test::sideways(), {-6.64993536442, 16.06197576467, -3.05437477859, -1.25855757328}, 1);
+  ASSERT_TRUE(result.known);
+  ASSERT_EQ(result.times.size(), 1U);
+  EXPECT_NEAR(result.times[0], 0.970521975, 1e-8);  // p0 has eleven digits
+}
+
+// Steering in place is abnormal: dq/dp0 is singular at all times and nothing can be counted.
+TEST(ConjugateTimes, UnknownOnAnAbnormalExtremal) {
+  const BoundaryValueProblem problem = test::vehicle({0, 0, 0, 0}, {0, 0, 0, kPi / 2});
+  EXPECT_FALSE(times_of(problem, {0, 0, 0, kPi / 2}, 1).known);
+}
+
+}  // namespace
+}  // namespace carnot

@@ -1,0 +1,218 @@
+// Geodesics without a guess: known answers, one route against another, every failure path.
+#include "carnot/shooting/geodesic.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "shooting/problems.h"
+
+namespace carnot {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kSideways = 22.7078818037714815;  // least action, 25 digits known
+constexpr double kRelative = 1e-11;  // endpoint error times |p| relative to the action, with margin
+
+GeodesicReport find(const BoundaryValueProblem& problem, GeodesicOptions options = {}) {
+  return find_geodesics(problem, options);
+}
+
+TEST(Geodesic, SidewaysParkingForEverySeed) {
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    GeodesicOptions options;
+    options.seed = seed;
+    const GeodesicReport report = find(test::sideways(), options);
+    ASSERT_EQ(report.status, GeodesicStatus::kConverged) << report.message;
+    ASSERT_EQ(report.geodesics.size(), 1U);
+    const Geodesic& geodesic = report.geodesics[0];
+    EXPECT_NEAR(geodesic.action, kSideways, kRelative * kSideways);
+    EXPECT_NEAR(geodesic.length.value(), std::sqrt(2 * kSideways), 1e-10);
+    EXPECT_EQ(geodesic.verification, Verification::kSingle);
+    EXPECT_LE(geodesic.endpoint_error, 1e-10);
+    EXPECT_LE(geodesic.constraint_error, 1e-13);
+    EXPECT_EQ(geodesic.label, Label::kLocallyMinimal);
+    EXPECT_EQ(geodesic.trajectory.t.size(), 201U);
+    ASSERT_EQ(geodesic.extremes.size(), 1U);
+    EXPECT_EQ(geodesic.extremes[0].first, "largest_steering_angle");
+    EXPECT_NEAR(geodesic.extremes[0].second, 0.4572, 1e-3);
+  }
+}
+
+TEST(Geodesic, TheAnswerDoesNotDependOnThreads) {
+  std::vector<GeodesicReport> reports;
+  for (const int threads : {1, 2, 3}) {
+    GeodesicOptions options;
+    options.threads = threads;
+    reports.push_back(find(test::sideways(), options));
+  }
+  for (const GeodesicReport& report : reports) {
+    EXPECT_EQ(report.geodesics[0].p0, reports[0].geodesics[0].p0);
+    EXPECT_EQ(report.starts, reports[0].starts);
+    EXPECT_EQ(report.converged_starts, reports[0].converged_starts);
+  }
+}
+
+TEST(Geodesic, CeresAndNloptAgree) {
+  GeodesicOptions options;
+  options.minimiser = "nlopt";
+  const GeodesicReport report = find(test::sideways(), options);
+  ASSERT_EQ(report.status, GeodesicStatus::kConverged) << report.message;
+  EXPECT_NEAR(report.geodesics[0].action, kSideways, kRelative * kSideways);
+}
+
+TEST(Geodesic, CountReturnsMirrorPartnersFirst) {
+  GeodesicOptions options;
+  options.count = 2;
+  options.starts = 24;
+  const GeodesicReport report = find(test::sideways(), options);
+  ASSERT_EQ(report.geodesics.size(), 2U);
+  EXPECT_NEAR(report.geodesics[0].action, kSideways, kRelative * kSideways);
+  EXPECT_NEAR(report.geodesics[1].action, kSideways, kRelative * kSideways);
+  EXPECT_NEAR(report.geodesics[0].p0[0], -report.geodesics[1].p0[0], 1e-8);
+}
+
+TEST(Geodesic, MaxLengthLeavesOutWhatIsLonger) {
+  GeodesicOptions options;
+  options.all = true;
+  options.starts = 24;
+  options.max_length = 6.75;
+  for (const Geodesic& geodesic : find(test::sideways(), options).geodesics) {
+    EXPECT_LE(geodesic.length.value(), options.max_length);
+  }
+}
+
+TEST(Geodesic, StraightAheadIsExact) {
+  const GeodesicReport report = find(test::straight_ahead());
+  ASSERT_EQ(report.geodesics.size(), 1U);
+  EXPECT_NEAR(report.geodesics[0].action, 0.5, 1e-14);
+  EXPECT_NEAR(report.geodesics[0].p0[0], 1, 1e-13);
+}
+
+TEST(Geodesic, StayingIsAnAnswer) {
+  const GeodesicReport report = find(test::vehicle({1, 2, 3, 4}, {1, 2, 3, 4}));
+  EXPECT_EQ(report.status, GeodesicStatus::kConverged);
+  ASSERT_EQ(report.geodesics.size(), 1U);
+  EXPECT_EQ(report.geodesics[0].action, 0);
+  EXPECT_EQ(report.geodesics[0].p0, std::vector<double>(4, 0.0));
+  EXPECT_EQ(report.geodesics[0].trajectory.q.back(), (std::vector<double>{1, 2, 3, 4}));
+}
+
+TEST(Geodesic, SteeringInPlaceIsAbnormalAndSolved) {
+  const GeodesicReport report = find(test::vehicle({0, 0, 0, 0}, {0, 0, 0, kPi / 2}));
+  ASSERT_EQ(report.status, GeodesicStatus::kConverged) << report.message;
+  EXPECT_NEAR(report.geodesics[0].action, kPi * kPi / 8, 1e-10);
+  EXPECT_EQ(report.geodesics[0].label, Label::kUnknown);
+}
+
+TEST(Geodesic, HeisenbergGroupClosedForm) {
+  // The dido problem: a full circle that encloses area z has length 2 sqrt(pi z).
+  const GeodesicReport report = find(test::heisenberg_group({0.5, 0, 2}));
+  ASSERT_EQ(report.status, GeodesicStatus::kConverged) << report.message;
+  const Geodesic& geodesic = report.geodesics[0];
+  const double w = geodesic.p0[2];
+  const double radius = std::hypot(geodesic.p0[0], geodesic.p0[1]) / std::abs(w);
+  // Chord 2 r |sin(w/2)| and area r^2 (w - sin w)/2 of the arc of angle w.
+  EXPECT_NEAR(2 * radius * std::abs(std::sin(w / 2)), 0.5, 1e-9);
+  EXPECT_NEAR(0.5 * radius * radius * (w - std::sin(w)), 2, 1e-9);
+}
+
+TEST(Geodesic, UnicycleSideways) {
+  const GeodesicReport report = find(test::unicycle({0, 0, 0}, {0, 1, 0}));
+  ASSERT_EQ(report.status, GeodesicStatus::kConverged) << report.message;
+  EXPECT_NEAR(report.geodesics[0].length.value(), 3.3403830192305876, 1e-9);
+}
+
+TEST(Geodesic, WithAPotential) {
+  const GeodesicReport report = find(test::vehicle_cosine({1, 0.5, 0.3, 0.8}, {2, 1, 0.5, 0.5}, 2));
+  ASSERT_EQ(report.status, GeodesicStatus::kConverged) << report.message;
+  EXPECT_LE(report.geodesics[0].endpoint_error, 1e-10);
+  EXPECT_LE(report.geodesics[0].energy_drift, 1e-12);
+}
+
+TEST(Geodesic, WithoutConstraints) {
+  const GeodesicReport report = find(test::oscillator({1, 0}, {0, 1}, 1));
+  ASSERT_EQ(report.status, GeodesicStatus::kConverged) << report.message;
+  EXPECT_NEAR(report.geodesics[0].p0[0], -std::cos(1.0) / std::sin(1.0), 1e-10);
+  EXPECT_NEAR(report.geodesics[0].p0[1], 1 / std::sin(1.0), 1e-10);
+}
+
+TEST(Geodesic, FarTargetsAreVerifiedAtKnots) {
+  // Nine lengths ahead with a turn: |dq(1)/dp0| is beyond what one forward run can carry.
+  const GeodesicReport report = find(test::long_vehicle({0, 0, 0, 0}, {30, 10, 1, 1}, 1));
+  ASSERT_EQ(report.status, GeodesicStatus::kConverged) << report.message;
+  const Geodesic& geodesic = report.geodesics[0];
+  EXPECT_EQ(geodesic.verification, Verification::kKnots);
+  EXPECT_LE(geodesic.knot_defect, 1e-10);
+  EXPECT_EQ(geodesic.trajectory.t.size(), 201U);
+  EXPECT_TRUE(std::is_sorted(geodesic.trajectory.t.begin(), geodesic.trajectory.t.end()));
+}
+
+TEST(Geodesic, TimeScalesTheAction) {
+  const BoundaryValueProblem slow = test::vehicle({0, 0, 0, 0}, {2, 1, 0.5, 0.5}, 10);
+  const BoundaryValueProblem quick = test::vehicle({0, 0, 0, 0}, {2, 1, 0.5, 0.5}, 0.1);
+  const double a = find(slow).geodesics.at(0).action;
+  const double b = find(quick).geodesics.at(0).action;
+  EXPECT_NEAR(100 * a, b, 1e-9 * b);
+}
+
+TEST(Geodesic, AGuessIsPolished) {
+  GeodesicOptions options;
+  options.guess = {2.1, -0.27, 1.16, 1.37};
+  const GeodesicReport report = find(test::vehicle({0, 0, 0, 0}, {2, 1, 0.5, 0.5}), options);
+  ASSERT_EQ(report.status, GeodesicStatus::kConverged) << report.message;
+  EXPECT_NEAR(report.geodesics[0].action, 3.197700949183654, 1e-10);
+  EXPECT_EQ(report.starts, 1);
+}
+
+TEST(Geodesic, AHopelessGuessSaysSo) {
+  GeodesicOptions options;
+  options.guess = {1e8, 1e8, -1e8, 1e8};
+  const GeodesicReport report = find(test::sideways(), options);
+  EXPECT_EQ(report.status, GeodesicStatus::kNotConverged);
+  EXPECT_NE(report.message.find("guess"), std::string::npos);
+  EXPECT_TRUE(report.geodesics.empty());
+}
+
+TEST(Geodesic, FailureSaysWhatToTry) {
+  GeodesicOptions options;
+  options.starts = 1;
+  const GeodesicReport report = find(test::vehicle({0, 0, 0, 0}, {0, 1e-13, 0, 0}), options);
+  EXPECT_EQ(report.status, GeodesicStatus::kNotConverged);
+  EXPECT_NE(report.message.find("try"), std::string::npos);
+}
+
+TEST(Geodesic, StopsWhenToldTo) {
+  GeodesicOptions options;
+  options.progress = [](double) { return false; };
+  EXPECT_EQ(find(test::sideways(), options).status, GeodesicStatus::kInterrupted);
+}
+
+TEST(Geodesic, RefusesBadInput) {
+  const std::vector<double> origin(4, 0.0);
+  EXPECT_THROW(find(test::vehicle({0, 0, 0}, origin)), std::invalid_argument);
+  EXPECT_THROW(find(test::vehicle(origin, {0, 0, 0, 0, 0})), std::invalid_argument);
+  EXPECT_THROW(find(test::vehicle(origin, {0, NAN, 0, 0})), std::invalid_argument);
+  EXPECT_THROW(find(test::vehicle(origin, {0, 1, 0, 0}, 0)), std::invalid_argument);
+  EXPECT_THROW(find(test::vehicle(origin, {0, 1, 0, 0}, -1)), std::invalid_argument);
+  EXPECT_THROW(test::long_vehicle(origin, {0, 1, 0, 0}, -1), std::invalid_argument);
+  const auto refuse = [](auto change) {
+    GeodesicOptions options;
+    change(options);
+    EXPECT_THROW(find(test::sideways(), options), std::invalid_argument);
+  };
+  refuse([](GeodesicOptions& o) { o.count = 0; });
+  refuse([](GeodesicOptions& o) { o.starts = -1; });
+  refuse([](GeodesicOptions& o) { o.threads = -1; });
+  refuse([](GeodesicOptions& o) { o.samples = -1; });
+  refuse([](GeodesicOptions& o) { o.tolerance = 0; });
+  refuse([](GeodesicOptions& o) { o.max_length = 0; });
+  refuse([](GeodesicOptions& o) { o.minimiser = "simplex"; });
+  refuse([](GeodesicOptions& o) { o.guess = {1, 2}; });
+}
+
+}  // namespace
+}  // namespace carnot

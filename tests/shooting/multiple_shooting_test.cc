@@ -1,0 +1,84 @@
+// The equations of multiple shooting, and the two minimisers against each other.
+#include "carnot/shooting/multiple_shooting.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "carnot/shooting/shooting_equations.h"
+#include "shooting/problems.h"
+
+namespace carnot {
+namespace {
+
+// The extremal of the general problem of the parking reference, to a few digits.
+const std::vector<double> kRoughP0{2.12, -0.274, 1.167, 1.378};
+
+TEST(ShootingEquations, JacobianIsThatOfTheResidual) {
+  const BoundaryValueProblem problem = test::vehicle({0, 0, 0, 0}, {2, 1, 0.5, 0.5});
+  const Knots knots = knots_of(problem, kRoughP0, 2, 16);
+  const ShootingEquations equations(problem, knots, 16);
+  constexpr int kSize = 8;
+  constexpr double kStep = 1e-5;  // central differences: error kStep^2 times third derivatives
+  constexpr double kTolerance = 1e-7;
+  for (int i = 0; i < 2; ++i) {
+    std::vector<double> z(knots.at(i), knots.at(i) + kSize);
+    std::vector<double> plus(kSize), minus(kSize), residual(kSize), jacobian(kSize * kSize);
+    const double* next = knots.at(i + 1);
+    ASSERT_TRUE(equations.evaluate(i, z.data(), next, residual.data(), jacobian.data()));
+    for (int j = 0; j < kSize; ++j) {
+      std::vector<double> moved = z;
+      moved[j] += kStep;
+      ASSERT_TRUE(equations.evaluate(i, moved.data(), next, plus.data(), nullptr));
+      moved[j] -= 2 * kStep;
+      ASSERT_TRUE(equations.evaluate(i, moved.data(), next, minus.data(), nullptr));
+      for (int row = 0; row < equations.residuals(i); ++row) {
+        const double difference = (plus[row] - minus[row]) / (2 * kStep);
+        EXPECT_NEAR(jacobian[row * kSize + j], difference, kTolerance);
+      }
+    }
+  }
+}
+
+TEST(MultipleShooting, SegmentsAndMinimisersAgree) {
+  const BoundaryValueProblem problem = test::vehicle({0, 0, 0, 0}, {2, 1, 0.5, 0.5});
+  std::vector<std::vector<double>> found;
+  for (const std::string& minimiser : minimisers()) {
+    for (const int segments : {1, 2, 8}) {
+      SCOPED_TRACE(minimiser + ", " + std::to_string(segments) + " segments");
+      Knots knots = knots_of(problem, kRoughP0, segments, 32);
+      ShootingOptions options;
+      options.minimiser = minimiser;
+      const Shooting result = shoot(problem, options, knots);
+      EXPECT_TRUE(result.converged);
+      EXPECT_LE(result.residual, options.tolerance);
+      found.push_back(knots.p0());
+    }
+  }
+  // The residual's tolerance, divided by the smallest singular value of dq/dp0, about 1e-2.
+  constexpr double kTolerance = 1e-6;
+  for (const auto& p0 : found) {
+    for (int j = 0; j < 4; ++j) EXPECT_NEAR(p0[j], found[0][j], kTolerance);
+  }
+}
+
+TEST(MultipleShooting, EndsWithTheFlowOfTheLastKnot) {
+  const BoundaryValueProblem problem = test::vehicle({0, 0, 0, 0}, {2, 1, 0.5, 0.5});
+  Knots knots = knots_of(problem, kRoughP0, 4, 32);
+  ASSERT_TRUE(shoot(problem, {}, knots).converged);
+  for (int j = 0; j < 4; ++j) EXPECT_NEAR(knots.at(4)[j], problem.to[j], 1e-8);
+}
+
+TEST(MultipleShooting, GivesUpWhereThereIsNothingNear) {
+  const BoundaryValueProblem problem = test::sideways();
+  for (const std::string& minimiser : minimisers()) {
+    Knots knots = knots_of(problem, {1e3, -1e3, 1e3, 1e3}, 1, 32);
+    ShootingOptions options;
+    options.minimiser = minimiser;
+    options.max_iterations = 3;
+    EXPECT_FALSE(shoot(problem, options, knots).converged) << minimiser;
+  }
+}
+
+}  // namespace
+}  // namespace carnot

@@ -1,0 +1,27 @@
+// Boundary-value problems that several tests use. Scenes are instantiated in problems.cc only.
+#pragma once
+
+#include <vector>
+
+#include "carnot/shooting/boundary_value_problem.h"
+
+namespace carnot::test {
+
+// The vehicle with alpha = beta = length = 1, T = 1.
+BoundaryValueProblem vehicle(std::vector<double> from, std::vector<double> to, double time = 1);
+BoundaryValueProblem sideways();        // (0, 0, 0, 0) to (0, 1, 0, 0)
+BoundaryValueProblem straight_ahead();  // (0, 0, 0, 0) to (1, 0, 0, 0)
+// The same scene with other parameters.
+BoundaryValueProblem long_vehicle(std::vector<double> from, std::vector<double> to, double length);
+
+BoundaryValueProblem vehicle_cosine(std::vector<double> from, std::vector<double> to, double time);
+BoundaryValueProblem heisenberg_group(std::vector<double> to, double time = 1);  // from the origin
+BoundaryValueProblem unicycle(std::vector<double> from, std::vector<double> to);
+
+// Two equal springs, no constraint: q'' = -q. Every extremal is conjugate, doubly, at t = pi.
+BoundaryValueProblem oscillator(std::vector<double> from, std::vector<double> to, double time);
+
+// The midpoint rule on the vehicle.
+Segment vehicle_midpoint();
+
+}  // namespace carnot::test

@@ -1,0 +1,64 @@
+#include "carnot/shooting/starts.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "shooting/problems.h"
+
+namespace carnot {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+TEST(Starts, AreTheSameForTheSameSeedAndIndex) {
+  const BoundaryValueProblem problem = test::sideways();
+  for (const int i : {0, 3, 10}) {
+    EXPECT_EQ(make_start(problem, 5, i).path.q, make_start(problem, 5, i).path.q);
+  }
+  EXPECT_NE(make_start(problem, 5, 0).path.q, make_start(problem, 6, 0).path.q);
+  EXPECT_NE(make_start(problem, 5, 0).path.q, make_start(problem, 5, 1).path.q);
+}
+
+TEST(Starts, JoinTheEnds) {
+  const BoundaryValueProblem problem = test::vehicle({0, 0, 0, 0}, {2, 1, 0.5, 0.5});
+  for (int i = 0; i < 12; ++i) {
+    const Path path = make_start(problem, 0, i).path;
+    for (int j = 0; j < 4; ++j) {
+      EXPECT_EQ(path.configuration(0)[j], problem.from[j]);
+      EXPECT_EQ(path.configuration(path.intervals)[j], problem.to[j]);
+    }
+  }
+}
+
+TEST(Starts, DoNotDependOnTheOrigin) {
+  const double far = 1 << 20;  // exact in floating point
+  const BoundaryValueProblem here = test::vehicle({0, 0, 0, 0}, {0, 1, 0, 0});
+  const BoundaryValueProblem there = test::vehicle({far, -far, 0, 0}, {far, 1 - far, 0, 0});
+  for (int i = 0; i < 8; ++i) {
+    const Start a = make_start(here, 0, i);
+    const Start b = make_start(there, 0, i);
+    EXPECT_DOUBLE_EQ(a.relaxation.penalty, b.relaxation.penalty);
+    for (int node = 0; node <= a.path.intervals; ++node) {
+      const double moved = b.path.configuration(node)[0] - far;
+      EXPECT_NEAR(a.path.configuration(node)[0], moved, 4 * kEpsilon * far);
+    }
+  }
+}
+
+TEST(Starts, GrowWithTheTarget) {
+  const auto extent = [](double y) {
+    const Path path = make_start(test::vehicle({0, 0, 0, 0}, {0, y, 0, 0}), 0, 0).path;
+    double largest = 0;
+    for (int i = 0; i <= path.intervals; ++i) {
+      largest = std::max(largest, std::abs(path.configuration(i)[0]));
+    }
+    return largest;
+  };
+  // e = 1/3 for start 0: a thousandth of the displacement, a tenth of the wiggle.
+  EXPECT_NEAR(extent(1e-3) / extent(1), 0.1, 1e-3);
+}
+
+}  // namespace
+}  // namespace carnot
