@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "carnot/gauss.h"
 
@@ -36,7 +37,8 @@ class Audit {
       length_.add(std::abs(weight) * system_.speed(q, v));
       constraint_error_ = std::max(constraint_error_, relative_constraint(q, v));
     }
-    energy_drift_ = std::max(energy_drift_, std::abs(node(t, z) - initial_));
+    const T drift = std::abs(node(t, z) - initial_);
+    if (!(drift <= energy_drift_)) energy_drift_ = drift;  // a NaN stays
   }
 
   [[nodiscard]] T action() const { return action_.value; }
@@ -50,7 +52,9 @@ class Audit {
     const Vector<T, n> q = z.value.template head<n>();
     const Vector<T, n> p = z.value.template tail<n>();
     Rate<T, n> rate;
-    if (system_.rate(t, q, p, y_, rate) != RateStatus::kOk) return initial_;
+    if (system_.rate(t, q, p, y_, rate) != RateStatus::kOk) {
+      return std::numeric_limits<T>::quiet_NaN();
+    }
     constraint_error_ = std::max(constraint_error_, relative_constraint(q, rate.q_dot));
     return system_.hamiltonian(t, q, p, y_);
   }

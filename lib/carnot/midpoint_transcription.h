@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cmath>
+#include <type_traits>
 
 #include "carnot/cholesky.h"
 #include "carnot/gradient.h"
@@ -47,23 +48,101 @@ template <class Scene, class T>
   return true;
 }
 
-// F_d(q0, q1, lambda) with x = (q0, q1, lambda) stacked, of length 2n + k.
-template <class Scene, class T>
-T discrete_lagrangian(const VelocityConstraints<Scene>& system,
-                      double h,
-                      const Vector<T, 2 * Scene::kDof + Scene::kMultipliers>& x) {
+// First and, where asked for, second derivatives of l(q, v) = L - lambda.G v at fixed lambda.
+template <int n, int k>
+struct AugmentedLagrangian {
+  Vector<double, n> l_q;
+  Vector<double, n> l_v;  // M v - G' lambda, the momentum
+  Vector<double, k> g;    // G v
+  Matrix<double, n, n> l_qq;
+  Matrix<double, n, n> l_vq;  // row: v, column: q
+  Matrix<double, n, n> l_vv;  // M
+  Matrix<double, k, n> g_q;
+  Matrix<double, k, n> g_v;  // G
+};
+
+// l is quadratic in v, so Jets are needed in the n directions of q only, nested for l_qq alone.
+template <class Scene>
+void augmented_lagrangian(const VelocityConstraints<Scene>& system,
+                          const Vector<double, Scene::kDof>& q,
+                          const Vector<double, Scene::kDof>& v,
+                          const Vector<double, Scene::kMultipliers>& lambda,
+                          bool second,
+                          AugmentedLagrangian<Scene::kDof, Scene::kMultipliers>& out) {
   constexpr int n = Scene::kDof;
   constexpr int k = Scene::kMultipliers;
-  const Vector<T, n> q0 = x.template head<n>();
-  const Vector<T, n> q1 = x.template segment<n>(n);
-  const T half = constant<T>(0.5);
-  const T rate = constant<T>(1 / h);
-  const Vector<T, n> qm = half * (q0 + q1);
-  const Vector<T, n> v = rate * (q1 - q0);
-  T f = system.lagrangian(qm, v);
-  const Vector<T, k> g = system.constraint(qm, v);
-  for (int i = 0; i < k; ++i) f -= x[2 * n + i] * g[i];
-  return constant<T>(h) * f;
+  const auto value = [&](const auto& x) {
+    using T = typename std::decay_t<decltype(x)>::Scalar;
+    Vector<T, n> velocity;
+    for (int i = 0; i < n; ++i) velocity[i] = constant<T>(v[i]);
+    T sum = system.lagrangian(x, velocity);
+    const Vector<T, k> g = system.constraint(x, velocity);
+    for (int i = 0; i < k; ++i) sum -= constant<T>(lambda[i]) * g[i];
+    return sum;
+  };
+  if (!second) {
+    out.l_q = gradient(value, q);
+    out.l_v = system.momentum(q, v, lambda);
+    out.g = system.constraint(q, v);
+    return;
+  }
+  using J = Jet<double, n>;
+  const Vector<J, n> x = seeded(q);
+  const Vector<J, n> vj = unseeded<J>(v);
+  const Vector<J, n> l_q = gradient(value, x);
+  const Vector<J, n> l_v = system.momentum(x, vj, Vector<J, k>(unseeded<J>(lambda)));
+  const Vector<J, k> g = system.constraint(x, vj);
+  for (int i = 0; i < n; ++i) {
+    out.l_q[i] = l_q[i].a;
+    out.l_v[i] = l_v[i].a;
+    out.l_qq.row(i) = l_q[i].v.transpose();
+    out.l_vq.row(i) = l_v[i].v.transpose();
+  }
+  for (int i = 0; i < k; ++i) {
+    out.g[i] = g[i].a;
+    for (int j = 0; j < n; ++j) out.g_q(i, j) = g[i].v[j];
+  }
+  out.l_vv = system.scene().mass(q);
+  out.g_v = system.scene().constraints(q);
+}
+
+// Gradient and, unless null, Hessian of the discrete Lagrangian F_d(q0, q1, lambda) = h l(qm, v)
+// with respect to x = (q0, q1, lambda), m = 2n + k. The chain rule with d qm = (dq0 + dq1)/2 and
+// d v = (dq1 - dq0)/h.
+template <class Scene>
+void discrete_lagrangian(
+    const VelocityConstraints<Scene>& system,
+    double h,
+    const Vector<double, 2 * Scene::kDof + Scene::kMultipliers>& x,
+    Vector<double, 2 * Scene::kDof + Scene::kMultipliers>& gradient_out,
+    Matrix<double, 2 * Scene::kDof + Scene::kMultipliers, 2 * Scene::kDof + Scene::kMultipliers>*
+        hessian) {
+  constexpr int n = Scene::kDof;
+  constexpr int k = Scene::kMultipliers;
+  const Vector<double, n> q0 = x.template head<n>();
+  const Vector<double, n> q1 = x.template segment<n>(n);
+  AugmentedLagrangian<n, k> l;
+  augmented_lagrangian(system,
+                       Vector<double, n>(0.5 * (q0 + q1)),
+                       Vector<double, n>((q1 - q0) / h),
+                       Vector<double, k>(x.template tail<k>()),
+                       hessian != nullptr,
+                       l);
+  gradient_out << 0.5 * h * l.l_q - l.l_v, 0.5 * h * l.l_q + l.l_v, -h * l.g;
+  if (hessian == nullptr) return;
+  const Matrix<double, n, n> symmetric = 0.5 * (l.l_vq + l.l_vq.transpose());
+  const Matrix<double, n, n> skew = 0.5 * (l.l_vq.transpose() - l.l_vq);
+  const Matrix<double, n, n> position = 0.25 * h * l.l_qq;
+  const Matrix<double, n, n> velocity = l.l_vv / h;
+  hessian->setZero();
+  hessian->template block<n, n>(0, 0) = position - symmetric + velocity;
+  hessian->template block<n, n>(n, n) = position + symmetric + velocity;
+  hessian->template block<n, n>(0, n) = position + skew - velocity;
+  hessian->template block<n, n>(n, 0) = hessian->template block<n, n>(0, n).transpose();
+  hessian->template block<k, n>(2 * n, 0) = l.g_v - 0.5 * h * l.g_q;
+  hessian->template block<k, n>(2 * n, n) = -l.g_v - 0.5 * h * l.g_q;
+  hessian->template topRightCorner<2 * n, k>() =
+      hessian->template bottomLeftCorner<k, 2 * n>().transpose();
 }
 
 }  // namespace carnot

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -32,7 +33,9 @@ struct Range {
   }
   [[nodiscard]] std::string text() const {
     if (std::isinf(lower)) return "finite";
-    return (open ? "> " : ">= ") + std::to_string(static_cast<long>(lower));
+    std::ostringstream text;
+    text << (open ? "> " : ">= ") << lower;
+    return text.str();
   }
 };
 

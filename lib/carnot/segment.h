@@ -159,11 +159,17 @@ FlowSummary audited_flow(const void* opaque,
   summary.report =
       carnot::flow(stepper, plan, state, [&](long i, const Step& step, const auto& node) {
         audit(plan.time(i + 1), step, node);
+        if (!std::isfinite(audit.energy_drift())) return false;
         recorder(i, node);
         if (!options.progress || i % kProgressEvery != 0) return true;
         return options.progress(static_cast<double>(i) / static_cast<double>(plan.count));
       });
   view<Step::kSize>(z) = state.value;
+  if (!std::isfinite(audit.energy_drift())) {
+    summary.report.status = FlowStatus::kStepFailed;
+    summary.report.last.status = StepStatus::kRateFailed;
+    summary.report.last.rate = RateStatus::kNotFinite;
+  }
   summary.action = audit.action();
   summary.length = audit.length();
   summary.energy_drift = audit.energy_drift();
@@ -252,17 +258,12 @@ void discrete_lagrangian(
     const void* opaque, double h, const double* x_in, double* gradient_out, double* hessian) {
   constexpr int m = 2 * System::kDof + System::kMultipliers;
   const auto& system = *static_cast<const System*>(opaque);
-  const auto f = [&](const auto& x) { return carnot::discrete_lagrangian(system, h, x); };
   const Vector<double, m> x = view<m>(x_in);
-  if (hessian == nullptr) {
-    view<m>(gradient_out) = gradient(f, x);
-    return;
-  }
-  const Vector<Jet<double, m>, m> derivative = gradient(f, seeded(x));
-  for (int i = 0; i < m; ++i) {
-    gradient_out[i] = derivative[i].a;
-    view<m>(hessian + i * m) = derivative[i].v;
-  }
+  Vector<double, m> slope;
+  Matrix<double, m, m> second;
+  carnot::discrete_lagrangian(system, h, x, slope, hessian != nullptr ? &second : nullptr);
+  view<m>(gradient_out) = slope;
+  if (hessian != nullptr) view<m * m>(hessian) = view<m * m>(second.data());
 }
 
 }  // namespace segment_calls

@@ -95,7 +95,30 @@ TYPED_TEST(MidpointTest, TermsMakeTheLagrangian) {
   }
 }
 
-// F_d and its derivatives: gradient against the parts of F_d, Hessian against the gradient.
+// The gradient against F_d itself.
+TYPED_TEST(MidpointTest, GradientAgreesWithDifferences) {
+  constexpr int size = TestFixture::kUnknowns;
+  constexpr int n = TypeParam::kDof;
+  constexpr int k = TypeParam::kMultipliers;
+  constexpr double h = 0.5;
+  const auto discrete = [&](const auto& x) {
+    const Vector<double, n> q = 0.5 * (x.template head<n>() + x.template segment<n>(n));
+    const Vector<double, n> v = (x.template segment<n>(n) - x.template head<n>()) / h;
+    const Vector<double, k> lambda = x.template tail<k>();
+    const double value =
+        h * (this->system_.lagrangian(q, v) - lambda.dot(this->system_.constraint(q, v)));
+    return Vector<double, 1>(Vector<double, 1>::Constant(value));
+  };
+  for (int sample = 0; sample < 10; ++sample) {
+    const auto x = test::random_vector<size>(this->generator_);
+    const auto slope = this->gradient(h, x);
+    for (int i = 0; i < size; ++i) {
+      EXPECT_NEAR(slope[i], difference(discrete, x, i)[0], kDifferences);
+    }
+  }
+}
+
+// The Hessian against the gradient.
 TYPED_TEST(MidpointTest, HessianAgreesWithDifferencesAndIsSymmetric) {
   constexpr int size = TestFixture::kUnknowns;
   constexpr double h = 0.5;
