@@ -37,7 +37,11 @@ class Tangent {
       if (status != RateStatus::kOk) return false;
       jacobian_[i] *= h * step.tableau().b[i];
     }
-    if (!iterate(step, m) && !solve(step, m)) return false;
+    if (!iterate(step, m) && !solve(step, m)) {
+      last_step_ = T(0);
+      return false;
+    }
+    last_step_ = h;
     Square sum = increment_[0];
     for (int i = 1; i < kStages; ++i) sum += increment_[i];
     m.add(sum);
@@ -47,10 +51,25 @@ class Tangent {
  private:
   static constexpr int kMaxIterations = 60;
 
+  // First guess, as for the stages: extrapolated from the last step, or A_i dz.
+  void predict(const Step& step, const Compensated<Square>& m) {
+    if (last_step_ != step.last_step()) {
+      for (int i = 0; i < kStages; ++i) increment_[i] = jacobian_[i].lazyProduct(m.value);
+      return;
+    }
+    const std::array<Square, kStages> last = increment_;
+    for (int i = 0; i < kStages; ++i) {
+      increment_[i] = step.tableau().extrapolation(i, 0) * last[0];
+      for (int j = 1; j < kStages; ++j) {
+        increment_[i] += step.tableau().extrapolation(i, j) * last[j];
+      }
+    }
+  }
+
   bool iterate(const Step& step, const Compensated<Square>& m) {
     const T scale = m.value.cwiseAbs().maxCoeff();
-    const T round_off = T(8) * std::numeric_limits<T>::epsilon() * scale;
-    for (int i = 0; i < kStages; ++i) increment_[i] = jacobian_[i].lazyProduct(m.value);
+    const T resolution = std::numeric_limits<T>::epsilon() * scale;
+    predict(step, m);
     T smallest = std::numeric_limits<T>::max();
     for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
       T change(0);
@@ -62,11 +81,11 @@ class Tangent {
         increment_[i] = jacobian_[i].lazyProduct(argument);
         change = std::max(change, (increment_[i] - last[i]).cwiseAbs().maxCoeff());
       }
-      if (change == T(0)) return true;
-      if (!(change < smallest)) return smallest <= round_off;
+      if (change <= T(0.25) * resolution) return true;
+      if (!(change < smallest)) return smallest <= T(8) * resolution;
       smallest = change;
     }
-    return smallest <= round_off;
+    return smallest <= T(8) * resolution;
   }
 
   // (I - h b_i A_i mu_ij) dL = h b_i A_i dz, all stages at once.
@@ -95,6 +114,7 @@ class Tangent {
     return finite;
   }
 
+  T last_step_ = T(0);
   // Scratch of the fallback.
   std::array<T, kSize * kStages * kSize * kStages> matrix_;
   std::array<T, kSize * kStages * kSize> rhs_;

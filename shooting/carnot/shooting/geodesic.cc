@@ -19,11 +19,13 @@ namespace {
 
 constexpr int kSegments = 8;      // of multiple shooting; divides the intervals of a path
 constexpr long kFirstSteps = 32;  // of the method over [0, T]
-constexpr int kRound = 12;        // starts between two looks at the list
+constexpr int kRound = 8;         // starts between two looks at the list
 constexpr int kMaxStarts = 96;    // when the best extremal keeps changing
 constexpr int kMaxStartsAll = 240;
-constexpr int kSweeps = 24;     // rounds of near hits, where more than the best is wanted
-constexpr int kEnoughHits = 3;  // of the least action, before a search for it ends
+constexpr int kSweeps = 24;            // rounds of near hits, where more than the best is wanted
+constexpr int kEnoughHits = 3;         // of the least action, before a search for it ends
+constexpr double kRival = 0.02;        // extremals this close to the least action, relative,
+constexpr int kConvergedPerRival = 5;  // make the search longer: there may be another
 constexpr double kSameAction = 1e-9;
 
 // A relaxed path that satisfies the discrete equations, or why there is none.
@@ -43,9 +45,9 @@ class Search {
 
   // Runs rounds of starts until the list is good enough. False when interrupted.
   bool run() {
-    const int limit =
-        options_.starts > 0 ? options_.starts : (wants_all() ? kMaxStartsAll : kMaxStarts);
-    const int sweeps = wants_all() ? kSweeps : 0;
+    int limit = options_.all ? kMaxStartsAll : kMaxStarts;
+    if (options_.starts > 0) limit = options_.starts;
+    const int sweeps = wants_more() ? kSweeps : 0;
     const auto goes_on = [&](double share) {
       return !options_.progress || options_.progress(share);
     };
@@ -54,7 +56,7 @@ class Search {
       if (!goes_on(sweeps > 0 ? 0.5 * share : share)) return false;
       relax_round(std::min(kRound, limit - starts_));
     }
-    for (int round = 0; round < sweeps && !extremals_.empty(); ++round) {
+    for (int round = 0; round < sweeps && lacks() && !extremals_.empty(); ++round) {
       if (!goes_on(0.5 + 0.5 * round / sweeps)) return false;
       sweep_round(round);
     }
@@ -90,21 +92,27 @@ class Search {
   [[nodiscard]] bool any_discrete() const { return !discrete_.empty(); }
 
  private:
-  [[nodiscard]] bool wants_all() const { return options_.all || options_.count > 1; }
+  [[nodiscard]] bool wants_more() const { return options_.all || options_.count > 1; }
+  // Fewer extremals than asked for.
+  [[nodiscard]] bool lacks() const {
+    return options_.all || static_cast<int>(extremals_.size()) < options_.count;
+  }
 
-  // The search for one geodesic ends when the least action has been hit often enough; a search for
-  // more goes on to the limit.
+  // The search for one geodesic ends when the least action has been hit often enough, and the more
+  // often the more rivals it has; a search for more goes on to the limit.
   [[nodiscard]] bool settled() const {
-    if (options_.starts > 0 || wants_all() || extremals_.empty()) return false;
+    if (options_.starts > 0 || wants_more() || extremals_.empty()) return false;
     double least = std::numeric_limits<double>::infinity();
     for (const Extremal& extremal : extremals_) least = std::min(least, extremal.geodesic.action);
     int hits = 0;
+    int rivals = 0;
     for (std::size_t i = 0; i < extremals_.size(); ++i) {
-      // Mirror partners have the same action and count together.
       const double above = extremals_[i].geodesic.action - least;
+      // Mirror partners have the same action and count together.
       if (above <= kSameAction * std::abs(least)) hits += hits_[i];
+      if (above <= kRival * std::abs(least)) ++rivals;
     }
-    return hits >= kEnoughHits;
+    return hits >= kEnoughHits && converged_ >= kConvergedPerRival * rivals;
   }
 
   void relax_round(int count) {
@@ -191,44 +199,63 @@ class Search {
     return candidate;
   }
 
-  [[nodiscard]] std::optional<Extremal> polish(Knots knots) const {
+  [[nodiscard]] std::optional<Extremal> polish(const Knots& knots) const {
     ShootingOptions shooting;
     shooting.minimiser = options_.minimiser;
-    shooting.steps = kFirstSteps;
-    if (!shoot(problem_, shooting, knots).converged) return std::nullopt;
-    return verify(problem_, std::move(knots), kFirstSteps, options_.tolerance);
+    for (const long steps : {kFirstSteps / 2, 2 * kFirstSteps}) {
+      Knots joined = knots;
+      shooting.steps = steps;
+      if (!shoot(problem_, shooting, joined).converged) continue;
+      auto extremal = verify(problem_, std::move(joined), kFirstSteps, options_.tolerance);
+      if (extremal) return extremal;
+    }
+    return std::nullopt;
   }
 
   // Adds what is new, and its mirror partners. Returns the index in the list, or -1.
   int add(const std::optional<Extremal>& extremal) {
     if (!extremal) return kNone;
     for (std::size_t i = 0; i < extremals_.size(); ++i) {
-      if (same(extremals_[i], *extremal)) return static_cast<int>(i);
+      if (same(extremals_[i], *extremal) || same_family(extremals_[i], *extremal)) {
+        return static_cast<int>(i);
+      }
     }
     const int index = static_cast<int>(extremals_.size());
     extremals_.push_back(*extremal);
     hits_.push_back(0);
     for (const ProblemSymmetry& symmetry : symmetries_) {
+      if (!wants_more()) break;
       const Knots image = partner(problem_.segment.info, symmetry, extremal->knots);
       add(verify(problem_, image, kFirstSteps, options_.tolerance));
     }
     return index;
   }
 
-  // Index of a discrete extremal with the same nodes; discrete_.size() when it is new.
+  // Index of a discrete extremal with the same nodes, or with those of its mirror partner, which
+  // add() finds by itself; discrete_.size() when it is new.
   [[nodiscard]] std::size_t find_discrete(const Path& path) const {
-    constexpr double kSame = 1e-6;
+    std::vector<Path> images{path};
+    for (const ProblemSymmetry& symmetry : symmetries_) {
+      images.push_back(partner(problem_.segment.info, symmetry, path));
+    }
     for (std::size_t i = 0; i < discrete_.size(); ++i) {
-      if (discrete_[i].q.size() != path.q.size()) continue;
-      double apart = 0;
-      double extent = 0;
-      for (std::size_t j = 0; j < path.q.size(); ++j) {
-        apart = std::max(apart, std::abs(path.q[j] - discrete_[i].q[j]));
-        extent = std::max(extent, std::abs(path.q[j] - path.q[j % path.dof]));
+      for (const Path& image : images) {
+        if (same_nodes(discrete_[i], image)) return i;
       }
-      if (apart <= kSame * extent) return i;
     }
     return discrete_.size();
+  }
+
+  static bool same_nodes(const Path& a, const Path& b) {
+    constexpr double kSame = 1e-6;
+    if (a.q.size() != b.q.size()) return false;
+    double apart = 0;
+    double extent = 0;
+    for (std::size_t j = 0; j < a.q.size(); ++j) {
+      apart = std::max(apart, std::abs(a.q[j] - b.q[j]));
+      extent = std::max(extent, std::abs(a.q[j] - a.q[j % a.dof]));
+    }
+    return apart <= kSame * extent;
   }
 
   static constexpr int kNone = -1;

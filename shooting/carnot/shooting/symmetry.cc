@@ -77,4 +77,14 @@ Knots partner(const SceneInfo& info, const ProblemSymmetry& symmetry, const Knot
   return image;
 }
 
+Path partner(const SceneInfo& info, const ProblemSymmetry& symmetry, const Path& path) {
+  Path image{path.intervals, path.dof, std::vector<double>(path.q.size()), {}, {}};
+  for (int i = 0; i <= path.intervals; ++i) {
+    const int source = symmetry.reverses ? path.intervals - i : i;
+    const std::vector<double> q = linear(info.symmetries, symmetry, path.configuration(source));
+    for (int j = 0; j < path.dof; ++j) image.configuration(i)[j] = q[j] + symmetry.shift[j];
+  }
+  return image;
+}
+
 }  // namespace carnot

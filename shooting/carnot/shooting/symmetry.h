@@ -26,4 +26,7 @@ std::vector<ProblemSymmetry> symmetries_of(const BoundaryValueProblem& problem);
 // The partner of the extremal through `knots`.
 Knots partner(const SceneInfo& info, const ProblemSymmetry& symmetry, const Knots& knots);
 
+// The nodes of the partner of a path; without momenta and multipliers.
+Path partner(const SceneInfo& info, const ProblemSymmetry& symmetry, const Path& path);
+
 }  // namespace carnot

@@ -18,6 +18,7 @@ struct Extremal {
   Geodesic geodesic;
   Knots knots;
   std::vector<std::vector<double>> path;
+  bool singular = false;  // dq(T)/dp0 is singular: a member of a family, or abnormal
 };
 
 // Nothing when neither check succeeds. `steps` is where the search for a step begins.
@@ -28,6 +29,9 @@ std::optional<Extremal> verify(const BoundaryValueProblem& problem,
 
 // The same trajectory: nowhere further apart than 1e-6 of its extent.
 bool same(const Extremal& a, const Extremal& b);
+
+// Both singular and of equal action: one continuous family, of which one member is enough.
+bool same_family(const Extremal& a, const Extremal& b);
 
 // Samples, conjugate times and label of an extremal that is going to be returned.
 void complete(const BoundaryValueProblem& problem, long samples, Extremal& extremal);
