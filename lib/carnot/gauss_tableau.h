@@ -107,8 +107,8 @@ GaussTableau<T, s> make_gauss_tableau() {
 // One tableau per scalar and number of stages, made on first use.
 template <class T, int s>
 const GaussTableau<T, s>& gauss_tableau() {
-  static const GaussTableau<T, s> tableau = make_gauss_tableau<T, s>();
-  return tableau;
+  static const GaussTableau<T, s> kTableau = make_gauss_tableau<T, s>();
+  return kTableau;
 }
 
 }  // namespace carnot

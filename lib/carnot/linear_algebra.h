@@ -18,15 +18,15 @@ using Matrix = Eigen::Matrix<T, rows, cols>;
 template <class A, class B>
 auto product(const A& a, const B& b) {
   using T = typename A::Scalar;
-  constexpr int rows = A::RowsAtCompileTime;
-  constexpr int inner = A::ColsAtCompileTime;
-  constexpr int cols = B::ColsAtCompileTime;
-  static_assert(inner == B::RowsAtCompileTime && inner > 0);
-  Matrix<T, rows, cols> c;
-  for (int i = 0; i < rows; ++i) {
-    for (int j = 0; j < cols; ++j) {
+  constexpr int kRows = A::RowsAtCompileTime;
+  constexpr int kInner = A::ColsAtCompileTime;
+  constexpr int kCols = B::ColsAtCompileTime;
+  static_assert(kInner == B::RowsAtCompileTime && kInner > 0);
+  Matrix<T, kRows, kCols> c;
+  for (int i = 0; i < kRows; ++i) {
+    for (int j = 0; j < kCols; ++j) {
       T sum = a(i, 0) * b(0, j);
-      for (int k = 1; k < inner; ++k) sum += a(i, k) * b(k, j);
+      for (int k = 1; k < kInner; ++k) sum += a(i, k) * b(k, j);
       c(i, j) = sum;
     }
   }

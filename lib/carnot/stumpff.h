@@ -24,7 +24,7 @@ T stumpff(const T& s) {
     return T(stumpff<k>(s.a), derivative * s.v);
   } else {
     using std::abs, std::cos, std::sin, std::sqrt;
-    if (s < T(1)) {
+    if (s < T(1)) {  // here recursion would cancel
       T term(1);
       for (int i = 2; i <= k; ++i) term /= T(i);
       T sum = term;

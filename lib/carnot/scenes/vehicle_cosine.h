@@ -58,22 +58,22 @@ struct VehicleCosine {
 
   static constexpr auto parameters() {
     using P = Parameter<VehicleCosine>;
-    constexpr auto of = Vehicle::parameters();
-    return std::array{P{of[0].name,
+    constexpr auto kOf = Vehicle::parameters();
+    return std::array{P{kOf[0].name,
                         [](VehicleCosine& s) -> double& { return s.vehicle.alpha; },
-                        of[0].unit,
-                        of[0].range,
-                        of[0].meaning},
-                      P{of[1].name,
+                        kOf[0].unit,
+                        kOf[0].range,
+                        kOf[0].meaning},
+                      P{kOf[1].name,
                         [](VehicleCosine& s) -> double& { return s.vehicle.beta; },
-                        of[1].unit,
-                        of[1].range,
-                        of[1].meaning},
-                      P{of[2].name,
+                        kOf[1].unit,
+                        kOf[1].range,
+                        kOf[1].meaning},
+                      P{kOf[2].name,
                         [](VehicleCosine& s) -> double& { return s.vehicle.length; },
-                        of[2].unit,
-                        of[2].range,
-                        of[2].meaning}};
+                        kOf[2].unit,
+                        kOf[2].range,
+                        kOf[2].meaning}};
   }
 
   [[nodiscard]] SceneInfo info() const {

@@ -93,7 +93,8 @@ std::string shell_quoted(const std::string& text) {
 // is missing or stops early would kill this program by SIGPIPE. It only uses built-in commands.
 std::string command_line(const fs::path& directory) {
   return "cd " + shell_quoted(directory.string()) +
-         " && { gnuplot -d; echo $? > status; while read -r line; do :; done; } > log 2>&1; :";
+         " && { LC_ALL=C.UTF-8 gnuplot -d; echo $? > status; while read -r line; do :; done; } > "
+         "log 2>&1; :";
 }
 
 // What gnuplot said, but for the count of frames it gives for every film.

@@ -47,7 +47,7 @@ class Search {
   bool run() {
     int limit = options_.all ? kMaxStartsAll : kMaxStarts;
     if (options_.starts > 0) limit = options_.starts;
-    const int sweeps = wants_more() ? kSweeps : 0;
+    const int sweeps = wants_more() && options_.starts == 0 ? kSweeps : 0;
     const auto goes_on = [&](double share) {
       return !options_.progress || options_.progress(share);
     };
@@ -79,6 +79,17 @@ class Search {
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
       return extremals_[a].geodesic.action < extremals_[b].geodesic.action;
     });
+    // Equal actions, as of mirror partners, are ranked by p0, not by round-off.
+    for (auto first = order.begin(); first != order.end();) {
+      const double action = extremals_[*first].geodesic.action;
+      const auto last = std::find_if(first, order.end(), [&](std::size_t i) {
+        return extremals_[i].geodesic.action - action > kSameAction * std::abs(action);
+      });
+      std::sort(first, last, [&](std::size_t a, std::size_t b) {
+        return extremals_[a].geodesic.p0 < extremals_[b].geodesic.p0;
+      });
+      first = last;
+    }
     std::vector<Extremal> list;
     for (const std::size_t i : order) {
       if (extremals_[i].geodesic.length.value_or(0) <= options_.max_length) {

@@ -129,6 +129,25 @@ double correct(const BoundaryValueProblem& problem,
   return best;
 }
 
+// Where directions of p0 do not move the end point, the member of least norm, if it is one: on an
+// abnormal extremal any multiple of the abnormal covector may be added. Newton's steps have least
+// norm themselves, so this changes nothing else.
+void reduce(const BoundaryValueProblem& problem,
+            long steps,
+            double tolerance,
+            std::vector<double>& p0,
+            Eigen::MatrixXd& jacobian) {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(jacobian, Eigen::ComputeFullV);
+  const Eigen::MatrixXd kernel = svd.matrixV().rightCols(nullity(jacobian));
+  const Eigen::Map<const Eigen::VectorXd> p(p0.data(), static_cast<Eigen::Index>(p0.size()));
+  const Eigen::VectorXd least = p - kernel * (kernel.transpose() * p);
+  std::vector<double> trial(least.data(), least.data() + least.size());
+  Eigen::MatrixXd there = jacobian;
+  if (!(correct(problem, steps, 1e-3 * tolerance, trial, there) <= tolerance)) return;
+  p0 = trial;
+  jacobian = there;
+}
+
 // Times of [0, T], `samples` in all, that belong to segment i: [t_i, t_{i+1}), the last one closed.
 std::vector<double> times_of_segment(const BoundaryValueProblem& problem,
                                      int segments,
@@ -234,14 +253,16 @@ std::optional<Extremal> verify(const BoundaryValueProblem& problem,
   Eigen::MatrixXd jacobian;
   double error = std::numeric_limits<double>::infinity();
   if (correct(problem, steps, 1e-3 * tolerance, p0, jacobian) <= tolerance) {
+    extremal.singular = nullity(jacobian) > 0;
+    if (extremal.singular) reduce(problem, steps, tolerance, p0, jacobian);
     extremal.knots = knots_of(problem, p0, 1, tighter);
     error = largest_difference(extremal.knots.at(1), problem.to.data(), problem.segment.dof);
   }
   if (error <= tolerance) {
     geodesic.verification = Verification::kSingle;
     geodesic.endpoint_error = error;
-    extremal.singular = nullity(jacobian) > 0;
   } else {
+    extremal.singular = false;
     ShootingOptions options;
     options.steps = steps;
     options.tolerance = 1e-14;  // as far as it goes
