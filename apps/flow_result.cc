@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "carnot/plots/figure.h"
 #include "csv_text.h"
+#include "output_file.h"
 #include "text_table.h"
 
 namespace carnot::apps {
@@ -121,6 +123,33 @@ std::string flow_text(const FlowRequest& request, const FlowOutcome& outcome) {
   return title + text_table(rows);
 }
 
+// Path and panels on one page, unless something else is asked for.
+plots::Figure figure_of(const Destination& destination, const SceneInfo& info) {
+  const bool drawable = info.drawing.view != Drawing::View::kTimeOnly;
+  if (destination.figure != plots::Figure::kAutomatic || !drawable) return destination.figure;
+  return has_ending(destination.plot, ".gif") ? plots::Figure::kPath : plots::Figure::kOverview;
+}
+
+// A smooth picture needs more points than --samples may ask for.
+std::string draw(const std::string& file, const FlowRequest& request, const StepPlan& plan) {
+  constexpr long kPointsPerStep = 8;
+  constexpr long kMostPoints = 4001;
+  const Segment& segment = request.run.segment;
+  AuditOptions audit;
+  audit.samples =
+      std::max(request.run.samples, std::min(kMostPoints, kPointsPerStep * plan.count + 1));
+  std::vector<double> z = request.z;
+  const FlowSummary fine = segment.audited_flow(plan, z.data(), audit);
+  return plots::write_figure(file,
+                             segment.info,
+                             {{"flow",
+                               &fine.trajectory,
+                               fine.action,
+                               fine.length,
+                               extremes(segment.info, fine.trajectory)}},
+                             figure_of(request.run.destination, segment.info));
+}
+
 }  // namespace
 
 Result flow_result(const FlowRequest& request,
@@ -135,16 +164,7 @@ Result flow_result(const FlowRequest& request,
   result.csv = [&] {
     return csv_text(segment.info, segment.multipliers, {&outcome.summary.trajectory});
   };
-  result.draw = [&](const std::string& file) {
-    const FlowSummary& summary = outcome.summary;
-    return plots::write_figure(file,
-                               segment.info,
-                               {{"flow",
-                                 &summary.trajectory,
-                                 summary.action,
-                                 summary.length,
-                                 extremes(segment.info, summary.trajectory)}});
-  };
+  result.draw = [&](const std::string& file) { return draw(file, request, outcome.plan); };
   return result;
 }
 

@@ -171,7 +171,7 @@ Result geodesic_result(const GeodesicRequest& request,
     return csv_text(segment.info, segment.multipliers, trajectories);
   };
   result.draw = [&](const std::string& file) {
-    return plots::write_figure(file, segment.info, curves(report));
+    return plots::write_figure(file, segment.info, curves(report), request.run.destination.figure);
   };
   return result;
 }

@@ -1,5 +1,6 @@
 #include "run_options.h"
 
+#include <map>
 #include <stdexcept>
 
 #include "carnot/plots/plot_file.h"
@@ -13,6 +14,19 @@ namespace {
 
 constexpr long kMostSamples = 1000000;
 constexpr long kMostThreads = 1024;
+
+plots::Figure find_figure(const std::string& name) {
+  const std::map<std::string, plots::Figure> figures{{"automatic", plots::Figure::kAutomatic},
+                                                     {"path", plots::Figure::kPath},
+                                                     {"time", plots::Figure::kTime},
+                                                     {"energy", plots::Figure::kEnergy},
+                                                     {"overview", plots::Figure::kOverview}};
+  const auto found = figures.find(name);
+  if (found == figures.end()) {
+    refuse("--figure", name, "unknown figure", "automatic, path, time, energy or overview");
+  }
+  return found->second;
+}
 
 void check_destination(const Destination& destination, bool no_trajectory) {
   const std::string& output = destination.output;
@@ -45,6 +59,9 @@ void add_run_options(CLI::App& app, RunOptions& options) {
       ->type_name("N");
   app.add_option("--plot", options.destination.plot, "draw a .png, .svg, .pdf or .gif")
       ->type_name("FILE");
+  app.add_option(
+         "--figure", options.destination.figure_name, "automatic, path, time, energy, overview")
+      ->type_name("NAME");
   app.add_option("--output", options.destination.output, "write the result as .json or .csv")
       ->type_name("FILE");
   app.add_flag("--json", options.destination.json, "print one JSON object");
@@ -74,8 +91,15 @@ Run check(const RunOptions& options) {
   }
   run.no_trajectory = options.no_trajectory;
   run.destination = options.destination;
+  run.destination.figure = find_figure(options.destination.figure_name);
   check_destination(run.destination, run.no_trajectory);
   run.segment = run.entry->make(run.parameters, run.method.stages);
+  const bool drawable = run.segment.info.drawing.view != Drawing::View::kTimeOnly;
+  const plots::Figure figure = run.destination.figure;
+  if (!drawable && (figure == plots::Figure::kPath || figure == plots::Figure::kOverview)) {
+    refuse(
+        "--figure", options.destination.figure_name, "this scene has no drawing", "time or energy");
+  }
   return run;
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "carnot/plots/figure.h"
 #include "json_text.h"
 #include "method_table.h"
 #include "scene_entry.h"
@@ -21,6 +22,8 @@ struct Destination {
   bool quiet = false;
   std::string output;  // .json or .csv; empty: none
   std::string plot;    // empty: none
+  std::string figure_name = "automatic";
+  plots::Figure figure = plots::Figure::kAutomatic;  // set by check()
 };
 
 struct RunOptions {

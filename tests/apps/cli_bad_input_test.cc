@@ -161,6 +161,8 @@ const std::vector<BadInput> kRun =
                {"--seed -1", "--seed '-1'"},
                {"--seed 0.5", "--seed '0.5'"},
                {"--plot file.xyz", "file.xyz"},
+               {"--plot a.png --figure pie", "pie"},
+               {"--figure", "--figure"},
                {"--plot file", "'file'"},
                {"--plot missing/file.png", "missing/file.png"},
                {"--output file.txt", "--output 'file.txt'"},
