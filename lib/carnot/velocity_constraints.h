@@ -25,43 +25,9 @@
 #include "carnot/cholesky.h"
 #include "carnot/gradient.h"
 #include "carnot/index_one_system.h"
+#include "carnot/velocity_constrained_scene.h"
 
 namespace carnot {
-
-// Needs kDof, kMultipliers, mass(q) (n x n, symmetric), constraints(q) (k x n), all templates.
-template <class S>
-concept VelocityConstrainedScene = requires(const S& scene, const Vector<double, S::kDof>& q) {
-  { scene.mass(q) } -> std::convertible_to<Matrix<double, S::kDof, S::kDof>>;
-  { scene.constraints(q) } -> std::convertible_to<Matrix<double, S::kMultipliers, S::kDof>>;
-};
-
-template <class S>
-concept HasPotential = requires(const S& scene, const Vector<double, S::kDof>& q) {
-  { scene.potential(q) } -> std::convertible_to<double>;
-};
-
-// B(q), n x (n - k), columns that span ker G(q).
-template <class S>
-concept HasFrame = requires(const S& scene, const Vector<double, S::kDof>& q) {
-  { scene.frame(q) } -> std::convertible_to<Matrix<double, S::kDof, S::kDof - S::kMultipliers>>;
-};
-
-// d/dq [p.B(q) u - u'(B'M B) u/2 + V(q)] at fixed p, u: the derivative by hand.
-template <class S>
-concept HasFrameGradient = HasFrame<S> &&
-    requires(const S& scene,
-             const Vector<double, S::kDof>& q,
-             const Vector<double, S::kDof - S::kMultipliers>& u) {
-  { scene.frame_gradient(q, q, u) } -> std::convertible_to<Vector<double, S::kDof>>;
-};
-
-// B'M B, (n - k) x (n - k), by hand.
-template <class S>
-concept HasFrameMass = HasFrame<S> && requires(const S& scene, const Vector<double, S::kDof>& q) {
-  {
-    scene.frame_mass(q)
-    } -> std::convertible_to<Matrix<double, S::kDof - S::kMultipliers, S::kDof - S::kMultipliers>>;
-};
 
 template <VelocityConstrainedScene Scene>
 class VelocityConstraints {

@@ -33,7 +33,4 @@ bool same(const Extremal& a, const Extremal& b);
 // Both singular and of equal action: one continuous family, of which one member is enough.
 bool same_family(const Extremal& a, const Extremal& b);
 
-// Samples, conjugate times and label of an extremal that is going to be returned.
-void complete(const BoundaryValueProblem& problem, long samples, Extremal& extremal);
-
 }  // namespace carnot

@@ -1,0 +1,12 @@
+// What is said of an extremal that is going to be returned: samples, conjugate times, label.
+#pragma once
+
+#include "carnot/shooting/verification.h"
+
+namespace carnot {
+
+// Fills trajectory (`samples` times), extremes, conjugate times, Morse index, label, abnormal and
+// family dimension, as far as they can be known.
+void complete(const BoundaryValueProblem& problem, long samples, Extremal& extremal);
+
+}  // namespace carnot

@@ -1,0 +1,239 @@
+#include "carnot/shooting/search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "carnot/shooting/discrete_newton.h"
+#include "carnot/shooting/multiple_shooting.h"
+#include "carnot/shooting/starts.h"
+#include "carnot/shooting/sweep.h"
+
+namespace carnot {
+namespace {
+
+constexpr int kSegments = 8;      // of multiple shooting; divides the intervals of a path
+constexpr long kFirstSteps = 32;  // of the method over [0, T]
+constexpr int kRound = 8;         // starts between two looks at the list
+constexpr int kMaxStarts = 96;    // when the best extremal keeps changing
+constexpr int kMaxStartsAll = 240;
+constexpr int kSweeps = 24;            // rounds of near hits, where more than the best is wanted
+constexpr int kEnoughHits = 3;         // of the least action, before a search for it ends
+constexpr double kRival = 0.02;        // extremals this close to the least action, relative,
+constexpr int kConvergedPerRival = 5;  // make the search longer: there may be another
+constexpr double kSameAction = 1e-9;
+
+}  // namespace
+
+bool Search::run() {
+  int limit = options_.all ? kMaxStartsAll : kMaxStarts;
+  if (options_.starts > 0) limit = options_.starts;
+  const int sweeps = wants_more() && options_.starts == 0 ? kSweeps : 0;
+  const auto goes_on = [&](double share) { return !options_.progress || options_.progress(share); };
+  while (starts_ < limit && !settled()) {
+    const double share = static_cast<double>(starts_) / limit;
+    if (!goes_on(sweeps > 0 ? 0.5 * share : share)) return false;
+    relax_round(std::min(kRound, limit - starts_));
+  }
+  for (int round = 0; round < sweeps && lacks() && !extremals_.empty(); ++round) {
+    if (!goes_on(0.5 + 0.5 * round / sweeps)) return false;
+    sweep_round(round);
+  }
+  return true;
+}
+
+void Search::polish_guess() {
+  starts_ = 1;
+  for (const int segments : {kSegments, 1}) {
+    add(polish(knots_of(problem_, options_.guess, segments, kFirstSteps)));
+    if (!extremals_.empty()) break;
+  }
+  converged_ = extremals_.empty() ? 0 : 1;
+}
+
+std::vector<Extremal> Search::ranked() const {
+  std::vector<std::size_t> order(extremals_.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return extremals_[a].geodesic.action < extremals_[b].geodesic.action;
+  });
+  // Equal actions, as of mirror partners, are ranked by p0, not by round-off.
+  for (auto first = order.begin(); first != order.end();) {
+    const double action = extremals_[*first].geodesic.action;
+    const auto last = std::find_if(first, order.end(), [&](std::size_t i) {
+      return extremals_[i].geodesic.action - action > kSameAction * std::abs(action);
+    });
+    std::sort(first, last, [&](std::size_t a, std::size_t b) {
+      return extremals_[a].geodesic.p0 < extremals_[b].geodesic.p0;
+    });
+    first = last;
+  }
+  std::vector<Extremal> list;
+  for (const std::size_t i : order) {
+    if (extremals_[i].geodesic.length.value_or(0) <= options_.max_length) {
+      list.push_back(extremals_[i]);
+    }
+  }
+  return list;
+}
+
+bool Search::lacks() const {
+  return options_.all || static_cast<int>(extremals_.size()) < options_.count;
+}
+
+bool Search::settled() const {
+  if (options_.starts > 0 || wants_more() || extremals_.empty()) return false;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Extremal& extremal : extremals_) least = std::min(least, extremal.geodesic.action);
+  int hits = 0;
+  int rivals = 0;
+  for (std::size_t i = 0; i < extremals_.size(); ++i) {
+    const double above = extremals_[i].geodesic.action - least;
+    // Mirror partners have the same action and count together.
+    if (above <= kSameAction * std::abs(least)) hits += hits_[i];
+    if (above <= kRival * std::abs(least)) ++rivals;
+  }
+  return hits >= kEnoughHits && converged_ >= kConvergedPerRival * rivals;
+}
+
+void Search::relax_round(int count) {
+  std::vector<Candidate> candidates(count);
+  parallel_for(count, threads_, [&](int i) { candidates[i] = relax_start(starts_ + i); });
+  absorb(candidates);
+}
+
+void Search::sweep_round(int round) {
+  SweepOptions sweep;
+  sweep.seed = options_.seed;
+  sweep.round = round;
+  sweep.momentum_scale.assign(problem_.segment.dof, 0.0);
+  double shortest = std::numeric_limits<double>::infinity();
+  double longest = 0;
+  double largest = 0;
+  for (const Extremal& extremal : extremals_) {
+    const Geodesic& geodesic = extremal.geodesic;
+    shortest = std::min(shortest, geodesic.length.value_or(0));
+    longest = std::max(longest, geodesic.length.value_or(0));
+    for (std::size_t j = 0; j < geodesic.p0.size(); ++j) {
+      const double size = std::abs(geodesic.p0[j]);
+      sweep.momentum_scale[j] = std::max(sweep.momentum_scale[j], size);
+      largest = std::max(largest, size);
+    }
+  }
+  for (double& scale : sweep.momentum_scale) scale = std::max(scale, 0.3 * largest);
+  longest = std::min(std::max(longest, std::sqrt(2.0) * shortest), options_.max_length);
+  const auto energy = [&](double length) {
+    const double speed = length / problem_.time;
+    return 0.5 * speed * speed;
+  };
+  sweep.lowest = energy(0.9 * shortest);
+  sweep.highest = energy(longest);
+  std::vector<Path> paths = near_hits(problem_, sweep, threads_);
+  std::vector<Candidate> candidates(paths.size());
+  parallel_for(static_cast<int>(paths.size()), threads_, [&](int i) {
+    candidates[i].found = tighten(problem_, {}, paths[i]).converged;
+    candidates[i].path = std::move(paths[i]);
+  });
+  absorb(candidates);
+}
+
+void Search::absorb(const std::vector<Candidate>& candidates) {
+  starts_ += static_cast<int>(candidates.size());
+  // In the order of the starts, so that the list does not depend on the threads.
+  std::vector<const Path*> fresh;
+  std::vector<std::size_t> fresh_index;
+  for (const Candidate& candidate : candidates) {
+    if (!candidate.found) continue;
+    const std::size_t known = find_discrete(candidate.path);
+    if (known < discrete_.size()) {
+      if (extremal_of_[known] >= 0) ++hits_[extremal_of_[known]], ++converged_;
+      if (extremal_of_[known] == kPending) ++pending_hits_[known];
+      continue;
+    }
+    discrete_.push_back(candidate.path);
+    extremal_of_.push_back(kPending);
+    pending_hits_.push_back(1);
+    fresh.push_back(&candidate.path);
+    fresh_index.push_back(known);
+  }
+  std::vector<std::optional<Extremal>> polished(fresh.size());
+  parallel_for(static_cast<int>(fresh.size()), threads_, [&](int i) {
+    polished[i] = polish(knots_of(*fresh[i], kSegments));
+  });
+  for (std::size_t i = 0; i < fresh.size(); ++i) {
+    const int index = add(polished[i]);
+    extremal_of_[fresh_index[i]] = index;
+    if (index < 0) continue;
+    hits_[index] += pending_hits_[fresh_index[i]];
+    converged_ += pending_hits_[fresh_index[i]];
+  }
+}
+
+Search::Candidate Search::relax_start(int i) const {
+  Start start = make_start(problem_, options_.seed, i);
+  Candidate candidate;
+  relax(problem_, start.relaxation, start.path);
+  candidate.found = tighten(problem_, {}, start.path).converged;
+  candidate.path = std::move(start.path);
+  return candidate;
+}
+
+std::optional<Extremal> Search::polish(const Knots& knots) const {
+  ShootingOptions shooting;
+  shooting.minimiser = options_.minimiser;
+  for (const long steps : {kFirstSteps / 2, 2 * kFirstSteps}) {
+    Knots joined = knots;
+    shooting.steps = steps;
+    if (!shoot(problem_, shooting, joined).converged) continue;
+    auto extremal = verify(problem_, std::move(joined), kFirstSteps, options_.tolerance);
+    if (extremal) return extremal;
+  }
+  return std::nullopt;
+}
+
+int Search::add(const std::optional<Extremal>& extremal) {
+  if (!extremal) return kNone;
+  for (std::size_t i = 0; i < extremals_.size(); ++i) {
+    if (same(extremals_[i], *extremal) || same_family(extremals_[i], *extremal)) {
+      return static_cast<int>(i);
+    }
+  }
+  const int index = static_cast<int>(extremals_.size());
+  extremals_.push_back(*extremal);
+  hits_.push_back(0);
+  for (const ProblemSymmetry& symmetry : symmetries_) {
+    if (!wants_more()) break;
+    const Knots image = partner(problem_.segment.info, symmetry, extremal->knots);
+    add(verify(problem_, image, kFirstSteps, options_.tolerance));
+  }
+  return index;
+}
+
+std::size_t Search::find_discrete(const Path& path) const {
+  std::vector<Path> images{path};
+  for (const ProblemSymmetry& symmetry : symmetries_) {
+    images.push_back(partner(problem_.segment.info, symmetry, path));
+  }
+  for (std::size_t i = 0; i < discrete_.size(); ++i) {
+    for (const Path& image : images) {
+      if (same_nodes(discrete_[i], image)) return i;
+    }
+  }
+  return discrete_.size();
+}
+
+bool Search::same_nodes(const Path& a, const Path& b) {
+  constexpr double kSame = 1e-6;
+  if (a.q.size() != b.q.size()) return false;
+  double apart = 0;
+  double extent = 0;
+  for (std::size_t j = 0; j < a.q.size(); ++j) {
+    apart = std::max(apart, std::abs(a.q[j] - b.q[j]));
+    extent = std::max(extent, std::abs(a.q[j] - a.q[j % a.dof]));
+  }
+  return apart <= kSame * extent;
+}
+
+}  // namespace carnot

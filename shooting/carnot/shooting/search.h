@@ -1,0 +1,83 @@
+// The search for extremals: the growing list of those that are distinct.
+//
+// Rounds of starts are relaxed, tightened and, where new, polished and verified; rounds of near
+// hits follow where more than the best is wanted. The order of the starts decides the order of the
+// list, so it does not depend on the number of threads.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "carnot/shooting/knots.h"
+#include "carnot/shooting/parallel.h"
+#include "carnot/shooting/path.h"
+#include "carnot/shooting/symmetry.h"
+#include "carnot/shooting/verification.h"
+
+namespace carnot {
+
+class Search {
+ public:
+  // Keeps references to both.
+  Search(const BoundaryValueProblem& problem, const GeodesicOptions& options)
+      : problem_(problem),
+        options_(options),
+        threads_(thread_count(options.threads)),
+        symmetries_(symmetries_of(problem)) {}
+
+  // Runs rounds of starts until the list is good enough. False when interrupted.
+  bool run();
+
+  // Polishes one guess of p0 instead.
+  void polish_guess();
+
+  // Least action first, equal ones in the order of p0; none longer than options.max_length.
+  [[nodiscard]] std::vector<Extremal> ranked() const;
+  [[nodiscard]] int starts() const { return starts_; }
+  [[nodiscard]] int converged() const { return converged_; }
+  [[nodiscard]] bool any_discrete() const { return !discrete_.empty(); }
+
+ private:
+  // A relaxed path that satisfies the discrete equations,.
+  struct Candidate {
+    bool found = false;
+    Path path;
+  };
+
+  [[nodiscard]] bool wants_more() const { return options_.all || options_.count > 1; }
+  // Fewer extremals than asked for.
+  [[nodiscard]] bool lacks() const;
+  // The search for one geodesic ends when the least action has been hit often enough, and the more
+  // often the more rivals it has; a search for more goes on to the limit.
+  [[nodiscard]] bool settled() const;
+  void relax_round(int count);
+  // Energies from that of the shortest extremal to twice that, or to the longest one.
+  void sweep_round(int round);
+  // Polishes what is new among the candidates and adds it to the list.
+  void absorb(const std::vector<Candidate>& candidates);
+  [[nodiscard]] Candidate relax_start(int i) const;
+  [[nodiscard]] std::optional<Extremal> polish(const Knots& knots) const;
+  // Adds what is new, and its mirror partners. Returns the index in the list, or -1.
+  int add(const std::optional<Extremal>& extremal);
+  // Index of a discrete extremal with the same nodes, or with those of its mirror partner, which
+  // add() finds by itself; discrete_.size() when it is new.
+  [[nodiscard]] std::size_t find_discrete(const Path& path) const;
+  static bool same_nodes(const Path& a, const Path& b);
+
+  static constexpr int kNone = -1;
+  static constexpr int kPending = -2;
+
+  const BoundaryValueProblem& problem_;
+  const GeodesicOptions& options_;
+  int threads_;
+  std::vector<ProblemSymmetry> symmetries_;
+  std::vector<Extremal> extremals_;
+  std::vector<int> hits_;
+  std::vector<Path> discrete_;     // discrete extremals seen,
+  std::vector<int> extremal_of_;   // the extremal each became, kNone or kPending,
+  std::vector<int> pending_hits_;  // and how often it was seen before that was known
+  int starts_ = 0;
+  int converged_ = 0;
+};
+
+}  // namespace carnot

@@ -1,0 +1,150 @@
+// Verification, classification and the search for all extremals.
+#include "carnot/shooting/verification.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "carnot/shooting/classification.h"
+#include "carnot/shooting/end_point.h"
+#include "carnot/shooting/survey.h"
+#include "carnot/shooting/sweep.h"
+#include "shooting/problems.h"
+
+namespace carnot {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kTolerance = 1e-10;
+constexpr long kSteps = 32;
+const std::vector<double> kSidewaysP0{
+    -5.363131400277701, 16.18437737239682, -9.311614737376091, -4.080757918683527};
+
+TEST(Verification, AcceptsWhatArrives) {
+  const BoundaryValueProblem problem = test::sideways();
+  const auto extremal =
+      verify(problem, knots_of(problem, kSidewaysP0, 8, kSteps), kSteps, kTolerance);
+  ASSERT_TRUE(extremal);
+  EXPECT_EQ(extremal->geodesic.verification, Verification::kSingle);
+  EXPECT_LE(extremal->geodesic.endpoint_error, kTolerance);
+  EXPECT_FALSE(extremal->singular);
+  // The error that is reported is that of an integration afresh.
+  std::vector<double> z = problem.from;
+  z.insert(z.end(), extremal->geodesic.p0.begin(), extremal->geodesic.p0.end());
+  ASSERT_TRUE(problem.segment.flow(extremal->geodesic.plan, z.data()).completed());
+  EXPECT_EQ(largest_difference(z.data(), problem.to.data(), 4), extremal->geodesic.endpoint_error);
+}
+
+TEST(Verification, RefusesWhatDoesNotArrive) {
+  const BoundaryValueProblem problem = test::sideways();
+  const Knots astray = knots_of(problem, {300, -200, 100, 500}, 1, kSteps);
+  EXPECT_FALSE(verify(problem, astray, kSteps, kTolerance));
+}
+
+TEST(Verification, AToleranceOutOfReachIsRefused) {
+  const BoundaryValueProblem problem = test::sideways();
+  const Knots knots = knots_of(problem, kSidewaysP0, 8, kSteps);
+  EXPECT_FALSE(verify(problem, knots, kSteps, 1e-20));
+}
+
+TEST(Verification, AbnormalExtremalsGetTheCovectorOfLeastNorm) {
+  const BoundaryValueProblem problem = test::vehicle({0, 0, 0, 0}, {0, 0, 0, kPi / 2});
+  // Steering in place with some of the abnormal covector (sin theta, -cos theta, length, 0) added.
+  const Knots knots = knots_of(problem, {0, -3, 3, kPi / 2}, 1, kSteps);
+  auto extremal = verify(problem, knots, kSteps, kTolerance);
+  ASSERT_TRUE(extremal);
+  EXPECT_TRUE(extremal->singular);
+  EXPECT_NEAR(extremal->geodesic.p0[1], 0, 1e-12);
+  EXPECT_NEAR(extremal->geodesic.p0[3], kPi / 2, 1e-12);
+  complete(problem, 0, *extremal);
+  EXPECT_EQ(extremal->geodesic.abnormal, true);
+  EXPECT_EQ(extremal->geodesic.family_dimension, 0);
+}
+
+TEST(Verification, AFamilyIsSingular) {
+  // Full circles that enclose the area 1: all directions at the start will do.
+  const BoundaryValueProblem problem = test::heisenberg_group({0, 0, 1});
+  const double speed = 2 * std::sqrt(kPi);
+  std::vector<Extremal> members;
+  for (const double direction : {0.0, 1.0}) {
+    const std::vector<double> p0{speed * std::cos(direction), speed * std::sin(direction), 2 * kPi};
+    auto extremal = verify(problem, knots_of(problem, p0, 1, kSteps), kSteps, kTolerance);
+    ASSERT_TRUE(extremal);
+    complete(problem, 0, *extremal);
+    EXPECT_EQ(extremal->geodesic.label, Label::kSingular);
+    EXPECT_EQ(extremal->geodesic.family_dimension, 1);
+    EXPECT_EQ(extremal->geodesic.abnormal, false);
+    members.push_back(*extremal);
+  }
+  EXPECT_FALSE(same(members[0], members[1]));
+  EXPECT_TRUE(same_family(members[0], members[1]));
+}
+
+TEST(Survey, SamplesAcrossKnotsAreThoseOfOneRun) {
+  const BoundaryValueProblem problem = test::sideways();
+  const FlowSummary one = survey(problem, knots_of(problem, kSidewaysP0, 1, 64), 64, 21);
+  const FlowSummary many = survey(problem, knots_of(problem, kSidewaysP0, 8, 64), 64, 21);
+  ASSERT_EQ(one.trajectory.t.size(), 21U);
+  ASSERT_EQ(many.trajectory.t.size(), 21U);
+  EXPECT_NEAR(one.action, many.action, 1e-11);
+  for (std::size_t i = 0; i < 21; ++i) {
+    EXPECT_NEAR(one.trajectory.t[i], many.trajectory.t[i], 1e-15);
+    for (std::size_t j = 0; j < 4; ++j) {  // a start of each segment afresh: last stages differ
+      EXPECT_NEAR(one.trajectory.q[i][j], many.trajectory.q[i][j], 1e-11);
+    }
+  }
+}
+
+TEST(Sweep, DoesNotDependOnThreads) {
+  const BoundaryValueProblem problem = test::sideways();
+  SweepOptions options;
+  options.flows = 40;
+  options.keep = 5;
+  options.lowest = 10;
+  options.highest = 40;
+  options.momentum_scale = {5, 16, 10, 4};
+  const std::vector<Path> one = near_hits(problem, options, 1);
+  const std::vector<Path> two = near_hits(problem, options, 2);
+  ASSERT_EQ(one.size(), 5U);
+  ASSERT_EQ(two.size(), 5U);
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_EQ(one[i].q, two[i].q);
+    for (int j = 0; j < 4; ++j) {
+      EXPECT_EQ(one[i].configuration(one[i].intervals)[j], problem.to[j]);
+    }
+  }
+}
+
+// Extremals of the Heisenberg group to (x, z) solve mu(w/2) = 4 z / |x|^2 with
+// mu(s) = s / sin^2 s - cot s (Gaveau 1977); for (1, 0, 5) that has 11 roots.
+TEST(Search, FindsAllOfTheHeisenbergGroup) {
+  GeodesicOptions options;
+  options.all = true;
+  options.samples = 0;
+  const GeodesicReport report = find_geodesics(test::heisenberg_group({1, 0, 5}), options);
+  EXPECT_EQ(report.geodesics.size(), 11U);
+  for (std::size_t i = 0; i < report.geodesics.size(); ++i) {
+    const Label expected = i == 0 ? Label::kLocallyMinimal : Label::kConjugatePassed;
+    EXPECT_EQ(report.geodesics[i].label, expected) << i;
+    const double s = report.geodesics[i].p0[2] / 2;
+    const double mu = s / (std::sin(s) * std::sin(s)) - std::cos(s) / std::sin(s);
+    EXPECT_NEAR(mu, 20, 1e-6) << i;  // magnified by d mu / d s, up to 1e3
+  }
+}
+
+TEST(Search, KeepsOneMemberOfAFamily) {
+  GeodesicOptions options;
+  options.all = true;
+  options.samples = 0;
+  options.starts = 24;
+  const GeodesicReport report = find_geodesics(test::heisenberg_group({0, 0, 1}), options);
+  ASSERT_FALSE(report.geodesics.empty());
+  EXPECT_NEAR(report.geodesics[0].length.value(), 2 * std::sqrt(kPi), 1e-9);
+  for (std::size_t i = 1; i < report.geodesics.size(); ++i) {
+    EXPECT_GT(report.geodesics[i].action, report.geodesics[i - 1].action * (1 + 1e-9));
+  }
+}
+
+}  // namespace
+}  // namespace carnot
