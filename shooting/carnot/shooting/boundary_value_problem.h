@@ -15,20 +15,23 @@ struct BoundaryValueProblem {
   std::vector<double> to;    // q(T), length n
   double time = 1;           // T > 0
 
-  BoundaryValueProblem(Segment segment_,
-                       std::vector<double> from_,
-                       std::vector<double> to_,
-                       double time_)
-      : segment(std::move(segment_)), from(std::move(from_)), to(std::move(to_)), time(time_) {}
+  BoundaryValueProblem(Segment dynamics,
+                       std::vector<double> start,
+                       std::vector<double> target,
+                       double duration)
+      : segment(std::move(dynamics)),
+        from(std::move(start)),
+        to(std::move(target)),
+        time(duration) {}
 
   // A scene with gauss16.
   template <VelocityConstrainedScene Scene>
   BoundaryValueProblem(const Scene& scene,
-                       std::vector<double> from_,
-                       std::vector<double> to_,
-                       double time_ = 1)
+                       std::vector<double> start,
+                       std::vector<double> target,
+                       double duration = 1)
       : BoundaryValueProblem(
-            make_gauss_segment<8>(scene), std::move(from_), std::move(to_), time_) {}
+            make_gauss_segment<8>(scene), std::move(start), std::move(target), duration) {}
 
   // Throws std::invalid_argument: wrong lengths, values that are not finite, T <= 0, constraints
   // that are dependent at an end.
