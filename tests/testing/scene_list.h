@@ -21,6 +21,15 @@ using Scenes = ::testing::Types<scenes::Vehicle,
                                 scenes::HeisenbergGroup,
                                 scenes::Unicycle>;
 
+// V = 0.
+using FreeScenes = ::testing::
+    Types<scenes::Vehicle, scenes::Heisenberg, scenes::HeisenbergGroup, scenes::Unicycle>;
+// M(q) has an inverse.
+using RegularMassScenes =
+    ::testing::Types<scenes::Vehicle, scenes::VehicleCosine, scenes::Heisenberg, scenes::Unicycle>;
+// Rigid motions of the plane are symmetries.
+using PlanarScenes = ::testing::Types<scenes::Vehicle, scenes::Unicycle>;
+
 // Names for TYPED_TEST_SUITE: letters only.
 struct SceneNames {
   template <class Scene>

@@ -81,7 +81,7 @@ class Interval final : public ceres::CostFunction {
 };
 
 // Reads the terms of all intervals of a path.
-struct Survey {
+struct PathTerms {
   double action = 0;
   double violation = 0;
   double max_potential = 0;
@@ -90,10 +90,10 @@ struct Survey {
   std::vector<double> constraint;  // intervals x k
 };
 
-Survey survey(const Segment& segment, double h, const Path& path) {
+PathTerms terms_of(const Segment& segment, double h, const Path& path) {
   const int n = segment.dof;
   const int k = segment.multipliers;
-  Survey result;
+  PathTerms result;
   std::vector<double> qm(n), v(n), terms(n + k + 1);
   double largest_speed = 0;
   double largest_constraint = 0;
@@ -144,7 +144,7 @@ Relaxation relax(const BoundaryValueProblem& problem,
                  Path& path) {
   const Segment& segment = problem.segment;
   const double h = problem.time / path.intervals;
-  Survey state = survey(segment, h, path);
+  PathTerms state = terms_of(segment, h, path);
   const double spread = 1 + std::abs(state.max_potential);
   Transcription shared{
       segment, h, options.penalty * state.mass, state.max_potential + spread, state.potential};
@@ -171,7 +171,7 @@ Relaxation relax(const BoundaryValueProblem& problem,
     ceres::Solve(inner_options(options), &least_squares, &summary);
     result.iterations += static_cast<int>(summary.iterations.size());
     if (summary.termination_type == ceres::FAILURE) break;
-    state = survey(segment, h, path);
+    state = terms_of(segment, h, path);
     if (state.constraint.size() != lambda.size()) break;
     for (std::size_t i = 0; i < lambda.size(); ++i) lambda[i] -= shared.rho * state.constraint[i];
     if (state.violation < options.feasibility) break;
