@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "carnot/gauss.h"
+#include "carnot/phase_space.h"
 
 namespace carnot {
 

@@ -5,6 +5,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
+
+#include "carnot/scalar.h"
 
 namespace carnot {
 
@@ -38,6 +41,17 @@ T dot(const Vector<T, n>& a, const Vector<T, n>& b) {
   T sum = a[0] * b[0];
   for (int i = 1; i < n; ++i) sum += a[i] * b[i];
   return sum;
+}
+
+// No entry is infinite or not a number.
+template <class Derived>
+bool all_finite(const Eigen::MatrixBase<Derived>& a) {
+  using std::isfinite;
+  bool finite = true;
+  for (int i = 0; i < a.rows(); ++i) {
+    for (int j = 0; j < a.cols(); ++j) finite = finite && isfinite(value_of(a(i, j)));
+  }
+  return finite;
 }
 
 // A vector on somebody else's numbers.

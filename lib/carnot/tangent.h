@@ -1,18 +1,19 @@
-// The tangent of one Gauss step: exact derivative of the discrete map.
+// The tangent of one step: exact derivative of the discrete map.
 //
-// Differentiating the step of gauss.h at its converged stages, with A_i = df/dz(U_i),
+// Differentiating the step of runge_kutta.h at its converged stages, with A_i = h omega_i
+// df/dz(U_i),
 //
-//   dL_i = h b_i A_i (dz + sum_j mu_ij dL_j),      dz+ = dz + sum_j dL_j,
+//   dL_i = A_i (dz + sum_j mu_ij dL_j),      dz+ = dz + sum_j u_j dL_j,
 //
-// a linear system. It is solved to round-off by the same fixed point, or by one LU where that does
-// not contract. A_i is symmetric after multiplication with J, so dz+ is symplectic exactly when
-// mu_ij + mu_ji = 1. Cost: s rates on Jets with 2n directions and about ten products of 2n x 2n
-// matrices per stage.
+// a linear system. Coupled stages are solved to round-off by the same fixed point, or by one LU
+// where that does not contract; the others one after the other. A_i is symmetric after
+// multiplication with J, so dz+ is symplectic exactly when mu_ij + mu_p_ji = 1. Cost: s rates on
+// Jets with 2n directions and about ten products of 2n x 2n matrices per stage.
 #pragma once
 
 #include <array>
 
-#include "carnot/gauss.h"
+#include "carnot/runge_kutta.h"
 
 namespace carnot {
 
@@ -21,29 +22,31 @@ class Tangent {
  public:
   using T = typename Step::Scalar;
   static constexpr int kSize = Step::kSize;
-  static constexpr int kStages = Step::kStages;
+  static constexpr int kDof = Step::kDof;
   using Square = Matrix<T, kSize, kSize>;
 
   // M <- (dz+/dz) M for the step that `step` has just done. False when the linear system is
-  // singular; M is then unchanged.
+  // singular or its solution not finite; M is then unchanged.
   [[nodiscard]] bool advance(const Step& step, Compensated<Square>& m) {
     const T h = step.last_step();
-    for (int i = 0; i < kStages; ++i) {
+    count_ = step.tableau().stages();
+    for (int i = 0; i < count_; ++i) {
       const RateStatus status = phase_jacobian(step.system(),
                                                step.stage_time(i),
                                                Vector<T, kSize>(step.stages().col(i)),
                                                step.algebraic(i),
                                                jacobian_[i]);
       if (status != RateStatus::kOk) return false;
-      jacobian_[i] *= h * step.tableau().b[i];
+      jacobian_[i] *= h * step.tableau().omega[i];
     }
-    if (!iterate(step, m) && !solve(step, m)) {
-      last_step_ = T(0);
-      return false;
-    }
+    const bool coupled = step.tableau().coupling == Coupling::kFull;
+    const bool solved = coupled ? iterate(step, m) || solve(step, m) : solve_in_turn(step, m);
+    last_step_ = T(0);
+    if (!solved) return false;
+    Square sum = step.tableau().update[0] * increment_[0];
+    for (int i = 1; i < count_; ++i) sum += step.tableau().update[i] * increment_[i];
+    if (!sum.allFinite()) return false;
     last_step_ = h;
-    Square sum = increment_[0];
-    for (int i = 1; i < kStages; ++i) sum += increment_[i];
     m.add(sum);
     return true;
   }
@@ -51,17 +54,28 @@ class Tangent {
  private:
   static constexpr int kMaxIterations = 60;
 
-  // First guess, as for the stages: extrapolated from the last step, or A_i dz.
-  void predict(const Step& step, const Compensated<Square>& m) {
-    if (last_step_ != step.last_step()) {
-      for (int i = 0; i < kStages; ++i) increment_[i] = jacobian_[i].lazyProduct(m.value);
+  // sum += mu_ij dL_j.
+  static void add_stage(const Step& step, int i, int j, const Square& increment, Square& sum) {
+    if (!step.tableau().partitioned) {
+      sum += step.tableau().mu(i, j) * increment;
       return;
     }
-    const std::array<Square, kStages> last = increment_;
-    for (int i = 0; i < kStages; ++i) {
-      increment_[i] = step.tableau().extrapolation(i, 0) * last[0];
-      for (int j = 1; j < kStages; ++j) {
-        increment_[i] += step.tableau().extrapolation(i, j) * last[j];
+    sum.template topRows<kDof>() += step.tableau().mu(i, j) * increment.template topRows<kDof>();
+    sum.template bottomRows<kDof>() +=
+        step.tableau().mu_p(i, j) * increment.template bottomRows<kDof>();
+  }
+
+  // First guess, as for the stages: extrapolated from the last step, or A_i dz.
+  void predict(const Step& step, const Compensated<Square>& m) {
+    if (last_step_ == T(0) || last_step_ != step.last_step()) {
+      for (int i = 0; i < count_; ++i) increment_[i] = jacobian_[i].lazyProduct(m.value);
+      return;
+    }
+    std::swap(increment_, last_);
+    for (int i = 0; i < count_; ++i) {
+      increment_[i] = step.tableau().extrapolation(i, 0) * last_[0];
+      for (int j = 1; j < count_; ++j) {
+        increment_[i] += step.tableau().extrapolation(i, j) * last_[j];
       }
     }
   }
@@ -73,13 +87,13 @@ class Tangent {
     T smallest = std::numeric_limits<T>::max();
     for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
       T change(0);
-      const std::array<Square, kStages> last = increment_;
-      for (int i = 0; i < kStages; ++i) {
+      std::swap(increment_, last_);
+      for (int i = 0; i < count_; ++i) {
         Square argument = m.compensation;
-        for (int j = 0; j < kStages; ++j) argument += step.tableau().mu(i, j) * last[j];
+        for (int j = 0; j < count_; ++j) add_stage(step, i, j, last_[j], argument);
         argument += m.value;
         increment_[i] = jacobian_[i].lazyProduct(argument);
-        change = std::max(change, (increment_[i] - last[i]).cwiseAbs().maxCoeff());
+        change = std::max(change, (increment_[i] - last_[i]).cwiseAbs().maxCoeff());
       }
       if (change <= T(0.25) * resolution) return true;
       if (!(change < smallest)) return smallest <= T(8) * resolution;
@@ -88,39 +102,71 @@ class Tangent {
     return smallest <= T(8) * resolution;
   }
 
-  // (I - h b_i A_i mu_ij) dL = h b_i A_i dz, all stages at once.
+  // (I - A_i mu_ij) dL = A_i dz, all stages at once.
   bool solve(const Step& step, const Compensated<Square>& m) {
-    constexpr int kTotal = kSize * kStages;
-    using RowMajor = Eigen::Matrix<T, kSize, kSize, Eigen::RowMajor>;
-    bool finite = true;
-    for (int i = 0; i < kStages; ++i) {
-      Eigen::Map<RowMajor> rhs(rhs_.data() + i * kSize * kSize);
-      rhs = jacobian_[i].lazyProduct(m.value);
-      for (int j = 0; j < kStages; ++j) {
-        for (int r = 0; r < kSize; ++r) {
-          for (int c = 0; c < kSize; ++c) {
-            const T identity(i == j && r == c ? 1 : 0);
-            matrix_[(i * kSize + r) * kTotal + j * kSize + c] =
-                identity - step.tableau().mu(i, j) * jacobian_[i](r, c);
-          }
-        }
+    for (int i = 0; i < count_; ++i) {
+      rhs(i) = jacobian_[i].lazyProduct(m.value);
+      for (int j = 0; j < count_; ++j) set_block(step, i, j, i, j, count_);
+    }
+    return lu(0, count_);
+  }
+
+  // The same stage by stage, where a stage depends on those before it alone.
+  bool solve_in_turn(const Step& step, const Compensated<Square>& m) {
+    for (int i = 0; i < count_; ++i) {
+      Square argument = m.compensation;
+      for (int j = 0; j < i; ++j) add_stage(step, i, j, increment_[j], argument);
+      argument += m.value;
+      if (step.tableau().coupling == Coupling::kExplicit) {
+        increment_[i] = jacobian_[i].lazyProduct(argument);
+        continue;
+      }
+      rhs(0) = jacobian_[i].lazyProduct(argument);
+      set_block(step, i, i, 0, 0, 1);
+      if (!lu(i, 1)) return false;
+    }
+    return true;
+  }
+
+  using RowMajor = Eigen::Matrix<T, kSize, kSize, Eigen::RowMajor>;
+
+  // Rows of block `row` of the right-hand sides.
+  Eigen::Map<RowMajor> rhs(int row) {
+    return Eigen::Map<RowMajor>(rhs_.data() + row * kSize * kSize);
+  }
+
+  // The block of dL_j in the equation of dL_i, put at (row, column) of `blocks` blocks.
+  void set_block(const Step& step, int i, int j, int row, int column, int blocks) {
+    for (int r = 0; r < kSize; ++r) {
+      for (int c = 0; c < kSize; ++c) {
+        const T identity(i == j && r == c ? 1 : 0);
+        const T mu = c < kDof ? step.tableau().mu(i, j) : step.tableau().momentum_mu(i, j);
+        matrix_[(row * kSize + r) * kSize * blocks + column * kSize + c] =
+            identity - mu * jacobian_[i](r, c);
       }
     }
-    if (!lu_solve(kTotal, matrix_.data(), kSize, rhs_.data())) return false;
-    for (int i = 0; i < kStages; ++i) {
-      increment_[i] = Eigen::Map<const RowMajor>(rhs_.data() + i * kSize * kSize);
-      finite = finite && increment_[i].allFinite();
+  }
+
+  // Solves for the increments first, ..., first + blocks - 1.
+  bool lu(int first, int blocks) {
+    if (!lu_solve(kSize * blocks, matrix_.data(), kSize, rhs_.data())) return false;
+    bool finite = true;
+    for (int i = 0; i < blocks; ++i) {
+      increment_[first + i] = rhs(i);
+      finite = finite && increment_[first + i].allFinite();
     }
     return finite;
   }
 
+  int count_ = 0;
   T last_step_ = T(0);
-  // Scratch of the fallback.
-  std::array<T, kSize * kStages * kSize * kStages> matrix_;
-  std::array<T, kSize * kStages * kSize> rhs_;
+  // Scratch of the linear solves.
+  std::array<T, kSize * Step::kMaxCoupled * kSize * Step::kMaxCoupled> matrix_;
+  std::array<T, kSize * Step::kMaxCoupled * kSize> rhs_;
 
-  std::array<Square, kStages> jacobian_;
-  std::array<Square, kStages> increment_;
+  std::array<Square, Step::kMaxStages> jacobian_;
+  std::array<Square, Step::kMaxStages> increment_;
+  std::array<Square, Step::kMaxStages> last_;
 };
 
 }  // namespace carnot

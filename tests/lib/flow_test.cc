@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "carnot/gauss.h"
 #include "carnot/tangent_flow.h"
 #include "testing/counting_system.h"
 #include "testing/failing_scenes.h"

@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
+
+#include "testing/order_conditions.h"
+#include "testing/rooted_trees.h"
 
 namespace carnot {
 namespace {
@@ -12,159 +16,127 @@ namespace {
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr long double kWideEps = std::numeric_limits<long double>::epsilon();
 
-template <class Stages>
-class GaussTableauTest : public ::testing::Test {
+// Over the number of stages s.
+class GaussTableauTest : public ::testing::TestWithParam<int> {
  protected:
-  static constexpr int kStages = Stages::value;
-  const GaussTableau<double, kStages>& tableau_ = gauss_tableau<double, kStages>();
-  const GaussTableau<long double, kStages>& wide_ = gauss_tableau<long double, kStages>();
-  // Each law sums kStages terms of size at most 1 whose factors carry a few roundings of the nodes.
-  const long double tolerance_ = 16 * kStages * kWideEps;
+  const int s_ = GetParam();
+  const Tableau<double> tableau_ = gauss_tableau<double>(s_);
+  const Tableau<long double> wide_ = gauss_tableau<long double>(s_);
+  // Each law sums s terms of size at most 1 whose factors carry a few roundings
+  // of the nodes.
+  const long double tolerance_ = 16 * s_ * kWideEps;
 };
 
-template <int s>
-using Stages = std::integral_constant<int, s>;
-using AllStages = ::testing::Types<Stages<1>,
-                                   Stages<2>,
-                                   Stages<3>,
-                                   Stages<4>,
-                                   Stages<5>,
-                                   Stages<6>,
-                                   Stages<7>,
-                                   Stages<8>,
-                                   Stages<9>,
-                                   Stages<10>,
-                                   Stages<11>,
-                                   Stages<12>>;
-struct StageNames {
-  template <class S>
-  static std::string GetName(int /*index*/) {
-    return "s" + std::to_string(S::value);
-  }
-};
-TYPED_TEST_SUITE(GaussTableauTest, AllStages, StageNames);
+INSTANTIATE_TEST_SUITE_P(AllStages,
+                         GaussTableauTest,
+                         ::testing::Range(1, kMostCoupledStages + 1),
+                         [](const auto& stages) { return "s" + std::to_string(stages.param); });
 
 // B(2s): the quadrature is exact for degree < 2s, and not for degree 2s.
-TYPED_TEST(GaussTableauTest, QuadratureHasDegreeOfExactness2s) {
-  constexpr int s = TypeParam::value;
-  for (int k = 1; k <= 2 * s + 1; ++k) {
-    long double sum = 0;
-    for (int i = 0; i < s; ++i) sum += this->wide_.b[i] * std::pow(this->wide_.c[i], k - 1);
-    const long double defect = std::abs(k * sum - 1);
-    if (k <= 2 * s) {
-      EXPECT_LE(defect, k * this->tolerance_) << "k = " << k;
-    } else if (s <= 8) {  // the defect, (s!)^4 / (2s)!^2, is above round-off up to here
-      EXPECT_GT(defect, 4 * this->tolerance_) << "k = " << k;
-    }
+TEST_P(GaussTableauTest, QuadratureHasDegreeOfExactness2s) {
+  for (int k = 1; k <= 2 * s_; ++k) {
+    EXPECT_LE(test::quadrature_defect(wide_, k), k * tolerance_) << "k = " << k;
+  }
+  if (s_ <= 8) {  // the defect, (s!)^4 / (2s)!^2, is above round-off up to here
+    EXPECT_GT(test::quadrature_defect(wide_, 2 * s_ + 1), 4 * tolerance_);
   }
 }
 
 // C(s): the stages are exact for polynomials of degree < s.
-TYPED_TEST(GaussTableauTest, StagesCollocate) {
-  constexpr int s = TypeParam::value;
-  for (int k = 1; k <= s; ++k) {
-    for (int i = 0; i < s; ++i) {
-      long double sum = 0;
-      for (int j = 0; j < s; ++j) {
-        sum += this->wide_.mu(i, j) * this->wide_.b[j] * std::pow(this->wide_.c[j], k - 1);
-      }
-      EXPECT_NEAR(static_cast<double>(k * sum - std::pow(this->wide_.c[i], k)),
-                  0,
-                  static_cast<double>(k * this->tolerance_));
+TEST_P(GaussTableauTest, StagesCollocate) {
+  for (int k = 1; k <= s_; ++k) {
+    EXPECT_LE(test::stage_defect(wide_, k), k * tolerance_) << "k = " << k;
+  }
+}
+
+// D(s).
+TEST_P(GaussTableauTest, TransposedStagesCollocate) {
+  for (int k = 1; k <= s_; ++k) {
+    EXPECT_LE(test::transposed_defect(wide_, k), k * tolerance_) << "k = " << k;
+  }
+}
+
+// Order 2s: B(2s), C(s), D(s) imply it (Butcher 1964), the trees show it.
+TEST_P(GaussTableauTest, OrderConditionsOfTreesHold) {
+  constexpr int kMostOrder = 8;
+  constexpr int kRoundings = 4;  // every entry of a term is rounded to half a unit
+  const test::RootedTrees<double> trees(tableau_, kMostOrder);
+  EXPECT_EQ(tableau_.order, 2 * s_);
+  EXPECT_EQ(trees.order(kRoundings), std::min(2 * s_, kMostOrder));
+}
+
+TEST_P(GaussTableauTest, SymplecticityHoldsExactly) {
+  EXPECT_TRUE(is_symplectic(tableau_));
+  EXPECT_TRUE(is_symplectic(wide_));
+  for (int i = 0; i < s_; ++i) {
+    for (int j = 0; j < s_; ++j) {
+      EXPECT_EQ(tableau_.mu(j, i), 1.0 - tableau_.mu(i, j));
+      EXPECT_EQ(wide_.mu(j, i), 1.0L - wide_.mu(i, j));
     }
   }
 }
 
-// D(s): sum_i b_i c_i^{k-1} a_ij = b_j (1 - c_j^k) / k.
-TYPED_TEST(GaussTableauTest, TransposedStagesCollocate) {
-  constexpr int s = TypeParam::value;
-  for (int k = 1; k <= s; ++k) {
-    for (int j = 0; j < s; ++j) {
-      long double sum = 0;
-      for (int i = 0; i < s; ++i) {
-        sum += this->wide_.b[i] * std::pow(this->wide_.c[i], k - 1) * this->wide_.mu(i, j);
-      }
-      EXPECT_NEAR(static_cast<double>(k * sum - (1 - std::pow(this->wide_.c[j], k))),
-                  0,
-                  static_cast<double>(k * this->tolerance_));
-    }
-  }
-}
-
-TYPED_TEST(GaussTableauTest, SymplecticityHoldsExactly) {
-  constexpr int s = TypeParam::value;
-  for (int i = 0; i < s; ++i) {
-    for (int j = 0; j < s; ++j) {
-      EXPECT_EQ(this->tableau_.mu(i, j) + this->tableau_.mu(j, i), 1.0);
-      EXPECT_EQ(this->tableau_.mu(j, i), 1.0 - this->tableau_.mu(i, j));
-      EXPECT_EQ(this->wide_.mu(i, j) + this->wide_.mu(j, i), 1.0L);
-    }
-  }
-}
-
-// Reflection t -> 1 - t maps the method to itself.
-TYPED_TEST(GaussTableauTest, IsSymmetric) {
-  constexpr int s = TypeParam::value;
-  for (int i = 0; i < s; ++i) {
-    const int ri = s - 1 - i;
-    EXPECT_EQ(this->tableau_.b[i], this->tableau_.b[ri]);
-    EXPECT_NEAR(this->tableau_.c[i] + this->tableau_.c[ri], 1, kEps);
-    for (int j = 0; j < s; ++j) {
-      // mu_ij of neighbours is near 1; two entries, each rounded once.
-      EXPECT_NEAR(this->tableau_.mu(i, j) + this->tableau_.mu(ri, s - 1 - j), 1, 2 * kEps);
+// Reflection t -> 1 - t maps the method to itself, exactly.
+TEST_P(GaussTableauTest, IsSymmetric) {
+  for (int i = 0; i < s_; ++i) {
+    const int ri = s_ - 1 - i;
+    EXPECT_EQ(tableau_.b[i], tableau_.b[ri]);
+    EXPECT_NEAR(tableau_.c[i] + tableau_.c[ri], 1, kEps);
+    for (int j = 0; j < s_; ++j) {
+      EXPECT_EQ(tableau_.mu(i, j) + tableau_.mu(ri, s_ - 1 - j), 1.0);
+      EXPECT_EQ(wide_.mu(i, j) + wide_.mu(ri, s_ - 1 - j), 1.0L);
     }
   }
 }
 
 // Rounded once: each double entry is the long double one to half a unit.
-TYPED_TEST(GaussTableauTest, DoubleIsTheRoundedWideTableau) {
-  constexpr int s = TypeParam::value;
+TEST_P(GaussTableauTest, DoubleIsTheRoundedWideTableau) {
   constexpr double kHalfUnit = 0.5001 * kEps;  // of numbers up to 1, plus the wide error
-  for (int i = 0; i < s; ++i) {
-    EXPECT_NEAR(static_cast<double>(this->tableau_.c[i] - this->wide_.c[i]), 0, kHalfUnit);
-    EXPECT_NEAR(static_cast<double>(this->tableau_.b[i] - this->wide_.b[i]), 0, kHalfUnit);
-    for (int j = 0; j < s; ++j) {
-      const long double mu = this->wide_.mu(i, j);
+  const auto error = [](double x, long double wide) { return static_cast<double>(x - wide); };
+  for (int i = 0; i < s_; ++i) {
+    EXPECT_NEAR(error(tableau_.c[i], wide_.c[i]), 0, kHalfUnit);
+    EXPECT_NEAR(error(tableau_.b[i], wide_.b[i]), 0, kHalfUnit);
+    for (int j = 0; j < s_; ++j) {
+      const long double mu = wide_.mu(i, j);
       const double unit = std::max(1.0, static_cast<double>(std::abs(mu)));
-      EXPECT_NEAR(static_cast<double>(this->tableau_.mu(i, j) - mu), 0, 2 * kHalfUnit * unit);
+      EXPECT_NEAR(error(tableau_.mu(i, j), mu), 0, 2 * kHalfUnit * unit);
     }
   }
 }
 
-TYPED_TEST(GaussTableauTest, NodesAscendInsideTheStep) {
-  constexpr int s = TypeParam::value;
-  for (int i = 0; i < s; ++i) {
-    EXPECT_GT(this->tableau_.c[i], i == 0 ? 0.0 : this->tableau_.c[i - 1]);
-    EXPECT_LT(this->tableau_.c[i], 1.0);
-    EXPECT_GT(this->tableau_.b[i], 0.0);
+TEST_P(GaussTableauTest, NodesAscendInsideTheStep) {
+  for (int i = 0; i < s_; ++i) {
+    EXPECT_GT(tableau_.c[i], i == 0 ? 0.0 : tableau_.c[i - 1]);
+    EXPECT_LT(tableau_.c[i], 1.0);
+    EXPECT_GT(tableau_.b[i], 0.0);
   }
-  EXPECT_NEAR(this->tableau_.b.sum(), 1, s * kEps);
+  EXPECT_NEAR(tableau_.b.sum(), 1, s_ * kEps);
 }
 
-// The extrapolated increments of a polynomial rate of degree < s are those of the next step.
-TYPED_TEST(GaussTableauTest, ExtrapolationReproducesPolynomials) {
-  constexpr int s = TypeParam::value;
-  for (int degree = 0; degree < s; ++degree) {
-    for (int i = 0; i < s; ++i) {
+// The extrapolated increments of a polynomial rate of degree < s are those of
+// the next step.
+TEST_P(GaussTableauTest, ExtrapolationReproducesPolynomials) {
+  for (int degree = 0; degree < s_; ++degree) {
+    for (int i = 0; i < s_; ++i) {
       long double sum = 0;
       long double size = 0;
-      for (int j = 0; j < s; ++j) {
+      for (int j = 0; j < s_; ++j) {
         const long double term =
-            this->wide_.extrapolation(i, j) * this->wide_.b[j] * std::pow(this->wide_.c[j], degree);
+            wide_.extrapolation(i, j) * wide_.b[j] * std::pow(wide_.c[j], degree);
         sum += term;
         size += std::abs(term);
       }
-      const long double exact = this->wide_.b[i] * std::pow(1 + this->wide_.c[i], degree);
-      // Extrapolation is ill-conditioned: the terms are larger than their sum; node differences
-      // as small as 1/s^2 enter s times.
-      const long double tolerance = 16 * s * s * kWideEps * size;
+      const long double exact = wide_.b[i] * std::pow(1 + wide_.c[i], degree);
+      // Extrapolation is ill-conditioned: the terms are larger than their sum;
+      // node differences as small as 1/s^2 enter s times.
+      const long double tolerance = 16 * s_ * s_ * kWideEps * size;
       EXPECT_LE(std::abs(sum - exact), tolerance) << "degree " << degree << ", node " << i;
     }
   }
 }
 
 TEST(GaussTableauClosedForm, OneStageIsTheMidpointRule) {
-  const auto& t = gauss_tableau<double, 1>();
+  const auto t = gauss_tableau<double>(1);
   EXPECT_EQ(t.c[0], 0.5);
   EXPECT_EQ(t.b[0], 1.0);
   EXPECT_EQ(t.mu(0, 0), 0.5);
@@ -172,7 +144,7 @@ TEST(GaussTableauClosedForm, OneStageIsTheMidpointRule) {
 }
 
 TEST(GaussTableauClosedForm, TwoStages) {
-  const auto& t = gauss_tableau<double, 2>();
+  const auto t = gauss_tableau<double>(2);
   const double r = std::sqrt(3.0) / 6;
   EXPECT_NEAR(t.c[0], 0.5 - r, kEps);
   EXPECT_NEAR(t.c[1], 0.5 + r, kEps);
@@ -182,7 +154,7 @@ TEST(GaussTableauClosedForm, TwoStages) {
 }
 
 TEST(GaussTableauClosedForm, ThreeStages) {
-  const auto& t = gauss_tableau<double, 3>();
+  const auto t = gauss_tableau<double>(3);
   const double r = std::sqrt(15.0);
   Matrix<double, 3, 3> a;
   // clang-format off
@@ -197,6 +169,37 @@ TEST(GaussTableauClosedForm, ThreeStages) {
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) EXPECT_NEAR(t.mu(i, j) * t.b[j], a(i, j), kEps);
   }
+}
+
+// Of a number and its complement both are exact, also outside [0, 1].
+TEST(RoundedWithComplementTest, SumsToOneExactly) {
+  for (int k = -4000; k <= 4000; ++k) {
+    const long double wide = static_cast<long double>(k) / 1237;
+    const auto x = rounded_with_complement<double>(wide);
+    const double complement = 1 - x;
+    EXPECT_EQ(x + complement, 1.0) << k;
+    EXPECT_EQ(1 - complement, x) << k;
+    const double unit = std::max(1.0, static_cast<double>(std::abs(wide)));
+    EXPECT_NEAR(static_cast<double>(x - wide), 0, kEps * unit) << k;
+  }
+}
+
+template <class T, int s>
+void expect_equal(const Tableau<T, s>& fixed, const Tableau<T>& of) {
+  EXPECT_EQ(fixed.stages(), of.stages());
+  EXPECT_EQ(fixed.order, of.order);
+  EXPECT_EQ(fixed.c, of.c);
+  EXPECT_EQ(fixed.b, of.b);
+  EXPECT_EQ(fixed.omega, of.b);
+  EXPECT_EQ(fixed.mu, of.mu);
+  EXPECT_EQ(fixed.extrapolation, of.extrapolation);
+  EXPECT_TRUE(is_symplectic(fixed));
+}
+
+TEST(FixedStagesTest, HoldTheSameNumbers) {
+  expect_equal(fixed_stages<1>(gauss_tableau<double>(1)), gauss_tableau<double>(1));
+  expect_equal(fixed_stages<8>(gauss_tableau<double>(8)), gauss_tableau<double>(8));
+  expect_equal(fixed_stages<3>(gauss_tableau<long double>(3)), gauss_tableau<long double>(3));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "carnot/gauss.h"
 #include "carnot/scenes/vehicle_cosine.h"
 #include "testing/order.h"
 #include "testing/runs.h"

@@ -1,0 +1,65 @@
+// Phase points z = (q, p) as the integrators see them: their state, their rate, its derivative.
+#pragma once
+
+#include "carnot/compensated.h"
+#include "carnot/gradient.h"
+#include "carnot/index_one_system.h"
+
+namespace carnot {
+
+enum class StepStatus { kOk, kRateFailed, kStagesDiverged };
+
+struct StepReport {
+  StepStatus status = StepStatus::kOk;
+  RateStatus rate = RateStatus::kOk;
+  int evaluations = 0;
+  bool newton = false;
+};
+
+// A phase point with its rounding error: z = (q, p) as one vector of length 2n.
+template <class T, int n>
+using State = Compensated<Vector<T, 2 * n>>;
+
+template <class T, int n>
+State<T, n> make_state(const Vector<T, n>& q, const Vector<T, n>& p) {
+  State<T, n> z{Vector<T, 2 * n>::Zero(), Vector<T, 2 * n>::Zero()};
+  z.value << q, p;
+  return z;
+}
+
+// dz/dt for z = (q, p); y is scratch and warm start. One copy for all callers, never inlined: the
+// loops over stages are faster so, by a tenth.
+template <class System, class T>
+[[gnu::noinline]] RateStatus phase_rate(const System& system,
+                                        const T& t,
+                                        const Vector<T, 2 * System::kDof>& z,
+                                        Vector<T, System::kAlgebraic>& y,
+                                        Vector<T, 2 * System::kDof>& z_dot) {
+  constexpr int n = System::kDof;
+  Rate<T, n> rate;
+  const RateStatus status = system.rate(
+      t, Vector<T, n>(z.template head<n>()), Vector<T, n>(z.template tail<n>()), y, rate);
+  if (status != RateStatus::kOk) return status;
+  z_dot.template head<n>() = rate.q_dot;
+  z_dot.template tail<n>() = rate.p_dot;
+  return status;
+}
+
+// d(dz/dt)/dz, exact: the rate on Jets with 2n directions. y is the solution at z.
+template <class System, class T>
+RateStatus phase_jacobian(const System& system,
+                          const T& t,
+                          const Vector<T, 2 * System::kDof>& z,
+                          const Vector<T, System::kAlgebraic>& y,
+                          Matrix<T, 2 * System::kDof, 2 * System::kDof>& jacobian) {
+  constexpr int m = 2 * System::kDof;
+  using J = Jet<T, m>;
+  Vector<J, m> rate;
+  Vector<J, System::kAlgebraic> warm = unseeded<J>(y);
+  const RateStatus status = phase_rate(system, J(t), seeded(z), warm, rate);
+  if (status != RateStatus::kOk) return status;
+  for (int i = 0; i < m; ++i) jacobian.row(i) = rate[i].v.transpose();
+  return status;
+}
+
+}  // namespace carnot

@@ -1,0 +1,189 @@
+// The tangent of one step, for every kind of coupling, against the step itself.
+#include "carnot/tangent.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "carnot/gauss.h"
+#include "carnot/tangent_flow.h"
+#include "testing/counting_system.h"
+#include "testing/method_runs.h"
+#include "testing/oscillator.h"
+
+namespace carnot {
+namespace {
+
+using test::Generator;
+using test::Oscillator;
+using System = VelocityConstraints<scenes::VehicleCosine>;
+// Differences need the room below double.
+using T = long double;
+using Step = RungeKutta<System, kAnyStages, T>;
+using Square = Matrix<T, 8, 8>;
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+constexpr T kWideEps = std::numeric_limits<T>::epsilon();
+constexpr int kSteps = 3;
+
+const System& cosine() {
+  static const System kSystem(test::uneven<scenes::VehicleCosine>());
+  return kSystem;
+}
+
+using TangentTest = test::MethodTest;
+INSTANTIATE_TEST_SUITE_P(Representatives,
+                         TangentTest,
+                         ::testing::ValuesIn(test::kRepresentatives),
+                         test::method_test_name);
+
+// A few steps with their tangent; the first from the rate, the others from what the last one left.
+Square run(const Tableau<T>& tableau, const State<T, 4>& start, const T& h) {
+  Step step(cosine(), tableau);
+  Tangent<Step> tangent;
+  Compensated<Square> m{Square::Identity(), Square::Zero()};
+  State<T, 4> z = start;
+  for (int i = 0; i < kSteps; ++i) {
+    EXPECT_EQ(step.step(T(i) * h, h, z).status, StepStatus::kOk);
+    EXPECT_TRUE(tangent.advance(step, m));
+  }
+  return m.value;
+}
+
+Vector<T, 8> end_point(const Tableau<T>& tableau, const State<T, 4>& start, const T& h) {
+  Step step(cosine(), tableau);
+  State<T, 4> z = start;
+  for (int i = 0; i < kSteps; ++i) {
+    EXPECT_EQ(step.step(T(i) * h, h, z).status, StepStatus::kOk);
+  }
+  return z.value;
+}
+
+TEST_P(TangentTest, IsTheDerivativeOfTheStep) {
+  // Central differences: third derivatives times d^2, and round-off over d.
+  constexpr T kDifference = 1e-6L;
+  constexpr double kTolerance = 1e-10;
+  const auto tableau = test::tableau_of<T>(name_);
+  const T h = 0.2L;
+  Generator generator(1);
+  for (int sample = 0; sample < 5; ++sample) {
+    const auto start = test::cast_state<T, 4>(test::random_state<4>(generator));
+    const Square m = run(tableau, start, h);
+    const T size = std::max(T(1), m.cwiseAbs().maxCoeff());
+    for (int j = 0; j < 8; ++j) {
+      auto above = start;
+      auto below = start;
+      above.value[j] += kDifference;
+      below.value[j] -= kDifference;
+      const Vector<T, 8> slope = (end_point(tableau, above, h) - end_point(tableau, below, h)) /
+                                 (above.value[j] - below.value[j]);
+      const T error = (slope - m.col(j)).cwiseAbs().maxCoeff();
+      EXPECT_LE(static_cast<double>(error / size), kTolerance) << "column " << j;
+    }
+  }
+}
+
+// M'JM = J, for the symplectic ones, and for no other.
+TEST_P(TangentTest, IsSymplecticWhereTheMethodIs) {
+  const auto tableau = test::tableau_of<T>(name_);
+  // Round-off of s stages and of products of 8 x 8 matrices.
+  const double tolerance = 64.0 * tableau.stages() * static_cast<double>(kWideEps);
+  Generator generator(2);
+  double largest = 0;
+  for (int sample = 0; sample < 10; ++sample) {
+    const auto start = test::cast_state<T, 4>(test::random_state<4>(generator));
+    const Square m = run(tableau, start, 0.4L);
+    const T size = std::max(T(1), m.cwiseAbs().maxCoeff());
+    largest = std::max(largest, static_cast<double>(symplecticity_defect(m) / (size * size)));
+  }
+  if (find_method(name_)->symplectic) {
+    EXPECT_LE(largest, tolerance);
+  } else {
+    EXPECT_GE(largest, 1e-9) << "yet it is not claimed to be";
+  }
+}
+
+// Of a linear system the step is its tangent; with a stiff one the fixed points do not contract.
+TEST_P(TangentTest, OfALinearSystemIsTheStep) {
+  using Linear = RungeKutta<Oscillator>;
+  for (const double stiffness : {1.0, 1e4}) {
+    if (!implicit() && stiffness > 1) continue;  // far from stable there
+    const Oscillator system{stiffness};
+    Linear step(system, tableau_);
+    Tangent<Linear> tangent;
+    const Vector<double, 2> start(0.3, -0.8);
+    State<double, 1> z{start, Vector<double, 2>::Zero()};
+    using Small = Matrix<double, 2, 2>;
+    Compensated<Small> m{Small::Identity(), Small::Zero()};
+    for (int i = 0; i < 10; ++i) {
+      ASSERT_EQ(step.step(i, 1, z).status, StepStatus::kOk);
+      ASSERT_TRUE(tangent.advance(step, m));
+      const Vector<double, 2> image = m.value * start;
+      // Ten steps, each with round-off amplified by (h w)^2.
+      const double tolerance = 64 * (i + 1) * stiffness * kEps;
+      EXPECT_LE((z.value - image).cwiseAbs().maxCoeff(), tolerance * m.value.cwiseAbs().maxCoeff());
+    }
+  }
+}
+
+TEST_P(TangentTest, OfAStepOfLengthZeroIsTheIdentity) {
+  const auto tableau = test::tableau_of<T>(name_);
+  Step step(cosine(), tableau);
+  Tangent<Step> tangent;
+  Generator generator(3);
+  auto z = test::cast_state<T, 4>(test::random_state<4>(generator));
+  Compensated<Square> m{Square::Identity(), Square::Zero()};
+  ASSERT_EQ(step.step(0, 0, z).status, StepStatus::kOk);
+  ASSERT_TRUE(tangent.advance(step, m));
+  EXPECT_EQ(m.value, Square(Square::Identity()));
+}
+
+// The first guess decides the cost only: a new Tangent for each step gives the same.
+TEST_P(TangentTest, WarmStartDoesNotChangeIt) {
+  const auto tableau = test::tableau_of<T>(name_);
+  Step step(cosine(), tableau);
+  Tangent<Step> warm;
+  Generator generator(4);
+  auto z = test::cast_state<T, 4>(test::random_state<4>(generator));
+  Compensated<Square> a{Square::Identity(), Square::Zero()};
+  Compensated<Square> b = a;
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_EQ(step.step(T(i) / 10, 0.1L, z).status, StepStatus::kOk);
+    Tangent<Step> cold;
+    ASSERT_TRUE(warm.advance(step, a));
+    ASSERT_TRUE(cold.advance(step, b));
+    const T size = std::max(T(1), a.value.cwiseAbs().maxCoeff());
+    const T error = (a.value - b.value).cwiseAbs().maxCoeff();
+    EXPECT_LE(error, T(32 * (i + 1)) * kWideEps * size);
+  }
+}
+
+// A rate whose derivative is not a number, although its value is finite.
+struct Kinked : Oscillator {
+  template <class U>
+  [[nodiscard]] RateStatus rate(const U& t,
+                                const Vector<U, 1>& q,
+                                const Vector<U, 1>& p,
+                                Vector<U, 0>& y,
+                                Rate<U, 1>& out) const {
+    const RateStatus status = Oscillator::rate(t, q, p, y, out);
+    if constexpr (kIsJet<U>) out.p_dot[0].v *= std::numeric_limits<double>::quiet_NaN();
+    return status;
+  }
+};
+
+TEST_P(TangentTest, RefusesWhatIsNotANumber) {
+  using Small = Matrix<double, 2, 2>;
+  const Kinked system{{1}};
+  RungeKutta<Kinked> step(system, tableau_);
+  Tangent<RungeKutta<Kinked>> tangent;
+  auto z = make_state<double, 1>(Vector<double, 1>(0.3), Vector<double, 1>(-0.8));
+  ASSERT_EQ(step.step(0, 0.1, z).status, StepStatus::kOk);
+  Compensated<Small> m{2 * Small::Identity(), Small::Zero()};
+  EXPECT_FALSE(tangent.advance(step, m));
+  EXPECT_EQ(m.value, Small(2 * Small::Identity()));
+}
+
+}  // namespace
+}  // namespace carnot
