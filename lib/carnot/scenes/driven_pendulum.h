@@ -1,0 +1,80 @@
+// A pendulum whose pivot is shaken up and down: L depends on time.
+//
+// The pivot is at height Y(t) = amplitude cos(frequency t), theta is measured from hanging down.
+// Per unit mass, without the terms of t alone,
+//
+//   L = length^2 theta'^2/2 + length Y' theta' sin(theta) + gravity length cos(theta),
+//   H = (p - length Y' sin(theta))^2/(2 length^2) - gravity length cos(theta).
+//
+// H is not conserved: dH/dt = H_t = -L_t = -length Y'' theta' sin(theta). Without shaking it is.
+// Upside down the pendulum is stable where amplitude^2 frequency^2 > 2 gravity length (for a fast,
+// small shake). Source: Landau & Lifshitz, Mechanics (1976), sec. 30, after Kapitza (1951).
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "carnot/linear_algebra.h"
+#include "carnot/scalar.h"
+#include "carnot/scene_info.h"
+
+namespace carnot::scenes {
+
+struct DrivenPendulum {
+  static constexpr int kDof = 1;
+  static constexpr int kMultipliers = 0;
+  static constexpr bool kTimeDependent = true;
+
+  double length = 1;
+  double gravity = 1;
+  double amplitude = 0.1;
+  double frequency = 20;
+
+  template <class T>
+  [[nodiscard]] T lagrangian(const T& t, const Vector<T, 1>& q, const Vector<T, 1>& v) const {
+    using std::cos, std::sin;
+    const T l = constant<T>(length);
+    const T pivot = constant<T>(-amplitude * frequency) * sin(constant<T>(frequency) * t);  // Y'
+    const T along = l * v[0];
+    return constant<T>(0.5) * along * along + pivot * along * sin(q[0]) +
+           constant<T>(gravity) * l * cos(q[0]);
+  }
+
+  static constexpr auto parameters() {
+    using P = Parameter<DrivenPendulum>;
+    return std::array{P{"length",
+                        [](DrivenPendulum& s) -> double& { return s.length; },
+                        "length",
+                        Range::positive(),
+                        "of the pendulum"},
+                      P{"gravity",
+                        [](DrivenPendulum& s) -> double& { return s.gravity; },
+                        "length/time^2",
+                        Range{},
+                        "acceleration downwards"},
+                      P{"amplitude",
+                        [](DrivenPendulum& s) -> double& { return s.amplitude; },
+                        "length",
+                        Range::non_negative(),
+                        "of the pivot's motion"},
+                      P{"frequency",
+                        [](DrivenPendulum& s) -> double& { return s.frequency; },
+                        "rad/time",
+                        Range::non_negative(),
+                        "of the pivot's motion"}};
+  }
+
+  [[nodiscard]] SceneInfo info() const {
+    SceneInfo info;
+    info.name = "kapitza-pendulum";
+    info.summary = "a pendulum on a pivot that is shaken up and down: L depends on time";
+    info.kind = "Lagrangian";
+    info.reference = "Landau & Lifshitz, Mechanics (1976), sec. 30";
+    info.configuration = {{"theta", "rad", 2 * std::numbers::pi}};
+    info.symmetries.mirrors = {{-1}};
+    return info;
+  }
+};
+
+}  // namespace carnot::scenes
