@@ -2,7 +2,7 @@
 //
 // Required: the sizes kDof (n) and kMultipliers (k), the mass matrix M(q) and the rows of G(q), as
 // templates of the scalar. Optional: a potential V(q), a frame B(q) of the admissible velocities,
-// derivatives by hand for the hot path, and what scene_info.h lists.
+// derivatives by hand for the hot path, chart(q) (chart.h), and what scene_info.h lists.
 #pragma once
 
 #include <concepts>
@@ -44,6 +44,12 @@ concept HasFrameMass = HasFrame<S> && requires(const S& scene, const Vector<doub
   {
     scene.frame_mass(q)
     } -> std::convertible_to<Matrix<double, S::kDof - S::kMultipliers, S::kDof - S::kMultipliers>>;
+};
+
+// h(q) = 0, kHolonomic (l) of them, besides the velocity constraints.
+template <class S>
+concept HasHolonomic = requires(const S& scene, const Vector<double, S::kDof>& q) {
+  { scene.holonomic(q) } -> std::convertible_to<Vector<double, S::kHolonomic>>;
 };
 
 }  // namespace carnot

@@ -20,8 +20,10 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <utility>
 
+#include "carnot/chart.h"
 #include "carnot/cholesky.h"
 #include "carnot/gradient.h"
 #include "carnot/index_one_system.h"
@@ -36,6 +38,7 @@ class VelocityConstraints {
   static constexpr int kMultipliers = Scene::kMultipliers;
   static constexpr int kFrame = kDof - kMultipliers;
   static constexpr int kAlgebraic = HasFrame<Scene> ? kFrame : kDof + kMultipliers;
+  static constexpr bool kAutonomous = true;
 
   explicit VelocityConstraints(Scene scene) : scene_(std::move(scene)) {}
 
@@ -49,6 +52,7 @@ class VelocityConstraints {
                                 const Vector<T, kDof>& p,
                                 Vector<T, kAlgebraic>& y,
                                 Rate<T, kDof>& out) const {
+    if (!regular_chart(scene_, q)) return RateStatus::kChart;
     if constexpr (HasFrame<Scene>) {
       return frame_rate(q, p, y, out);
     } else {
@@ -127,6 +131,21 @@ class VelocityConstraints {
     return RateStatus::kOk;
   }
 
+  // The same from the solution y of rate().
+  template <class T>
+  [[nodiscard]] RateStatus multipliers(const T& /*t*/,
+                                       const Vector<T, kDof>& q,
+                                       const Vector<T, kDof>& p,
+                                       const Vector<T, kAlgebraic>& y,
+                                       Vector<T, kMultipliers>& lambda) const {
+    if constexpr (HasFrame<Scene>) {
+      return multipliers(q, p, Vector<T, kDof>(product(scene_.frame(q), y)), lambda);
+    } else {
+      lambda = y.template tail<kMultipliers>();
+      return RateStatus::kOk;
+    }
+  }
+
   // p = M v - G' lambda.
   template <class T>
   [[nodiscard]] Vector<T, kDof> momentum(const Vector<T, kDof>& q,
@@ -150,6 +169,20 @@ class VelocityConstraints {
       if (status == RateStatus::kOk) v -= product(scene_.constraints(q).transpose(), lambda);
     }
     return status;
+  }
+
+  // p = M v - G' lambda of the projected velocity; returns |G v| / |v| before the projection.
+  template <class T>
+  [[nodiscard]] T admissible_momentum(const T& /*t*/,
+                                      const Vector<T, kDof>& q,
+                                      Vector<T, kDof>& v,
+                                      const Vector<T, kMultipliers>& lambda,
+                                      Vector<T, kDof>& p) const {
+    const T size = v.norm();
+    const T violated = constraint(q, v).norm();
+    if (project(q, v) != RateStatus::kOk) v.setConstant(std::numeric_limits<T>::quiet_NaN());
+    p = momentum(q, v, lambda);
+    return size > T(0) ? T(violated / size) : T(0);
   }
 
  private:
@@ -226,7 +259,7 @@ class VelocityConstraints {
       const Vector<J, kFrame> uj = unseeded<J>(u);
       out.p_dot = -gradient([&](const auto& x) { return frame_hamiltonian(x, pj, uj); }, q);
     }
-    return finite(out);
+    return status_of(out);
   }
 
   template <class T>
@@ -259,24 +292,10 @@ class VelocityConstraints {
     const Vector<J, kDof> pj = unseeded<J>(p);
     const Vector<J, kDof + kMultipliers> yj = unseeded<J>(y);
     out.p_dot = -gradient([&](const auto& x) { return multiplier_hamiltonian(x, pj, yj); }, q);
-    return finite(out);
+    return status_of(out);
   }
 
   // Why a factor failed; off the hot path.
-  template <class Derived>
-  static bool all_finite(const Eigen::MatrixBase<Derived>& a) {
-    using std::isfinite;
-    bool finite = true;
-    for (int i = 0; i < a.rows(); ++i) {
-      for (int j = 0; j < a.cols(); ++j) finite = finite && isfinite(value_of(a(i, j)));
-    }
-    return finite;
-  }
-  template <class T, int n>
-  static RateStatus finite(const Rate<T, n>& out) {
-    const bool ok = all_finite(out.q_dot) && all_finite(out.p_dot);
-    return ok ? RateStatus::kOk : RateStatus::kNotFinite;
-  }
   template <class M>
   static RateStatus mass_failure(const M& a) {
     return all_finite(a) ? RateStatus::kMassNotPositive : RateStatus::kNotFinite;
