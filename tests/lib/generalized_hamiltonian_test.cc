@@ -1,0 +1,260 @@
+#include "carnot/generalized_hamiltonian.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "carnot/flow.h"
+#include "carnot/gauss_tableau.h"
+#include "carnot/runge_kutta.h"
+#include "carnot/scenes/vehicle.h"
+#include "carnot/tangent_flow.h"
+#include "testing/generalized_scenes.h"
+#include "testing/runs.h"
+
+namespace carnot {
+namespace {
+
+using CanonicalVehicle = test::AsGeneralized<scenes::Vehicle>;
+using test::InBasis;
+using Vehicle = VelocityConstraints<scenes::Vehicle>;
+using VehicleAnywhere = InBasis<CanonicalVehicle>;
+using Anywhere = GeneralizedHamiltonian<VehicleAnywhere>;
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+
+const scenes::Vehicle kVehicle = test::uneven<scenes::Vehicle>();
+const CanonicalVehicle kCanonical{kVehicle};
+const VehicleAnywhere kOwn{kCanonical, Matrix<double, 10, 10>::Identity()};
+
+// The paper's start, lambda = 0.
+Vector<double, 10> vehicle_start() {
+  Vector<double, 10> z = Vector<double, 10>::Zero();
+  z.head<8>() = test::vehicle_start(Vehicle(kVehicle)).value;
+  return z;
+}
+
+// z = T (q, p, y) at a phase point of the system, y solved for.
+template <class System>
+Vector<double, System::kSize> lifted(const System& system,
+                                     const State<double, System::kDof>& state) {
+  const Vector<double, System::kDof> q = state.value.template head<System::kDof>();
+  const Vector<double, System::kDof> p = state.value.template tail<System::kDof>();
+  Vector<double, System::kAlgebraic> y = Vector<double, System::kAlgebraic>::Zero();
+  Rate<double, System::kDof> rate;
+  EXPECT_EQ(system.rate(0.0, q, p, y, rate), RateStatus::kOk);
+  return system.from_darboux(q, p, y);
+}
+
+template <class System>
+State<double, System::kDof> start_at(const System& system, const Vector<double, System::kSize>& z) {
+  const auto point = system.to_darboux(z);
+  return make_state<double, System::kDof>(point.q, point.p);
+}
+
+// The Gauss method of order 2s: one instantiation for all s.
+template <class System>
+RungeKutta<System> method_on(const System& system, const Tableau<double>& tableau) {
+  return RungeKutta<System>(system, tableau);
+}
+
+// The end of the vehicle's run from the paper's start, (q, p, lambda), with velocity constraints.
+Vector<double, 10> vehicle_end(const Tableau<double>& tableau, const StepPlan& plan) {
+  const Vehicle system(kVehicle);
+  auto method = method_on(system, tableau);
+  auto state = test::vehicle_start(system);
+  EXPECT_TRUE(flow(method, plan, state).completed());
+  const Vector<double, 4> q = state.value.head<4>();
+  const Vector<double, 4> p = state.value.tail<4>();
+  Vector<double, 2> u;
+  Rate<double, 4> rate;
+  Vector<double, 2> lambda;
+  EXPECT_EQ(system.rate(0.0, q, p, u, rate), RateStatus::kOk);
+  EXPECT_EQ(system.multipliers(0.0, q, p, u, lambda), RateStatus::kOk);
+  Vector<double, 10> z;
+  z << q, p, lambda;
+  return z;
+}
+
+// The same from the generalized Hamiltonian form in coordinates of its own.
+Vector<double, 10> generalized_end(const VehicleAnywhere& scene,
+                                   const Tableau<double>& tableau,
+                                   const StepPlan& plan) {
+  const Anywhere system(scene);
+  auto method = method_on(system, tableau);
+  auto state = start_at(system, scene.from_original(vehicle_start()));
+  EXPECT_TRUE(flow(method, plan, state).completed());
+  return scene.basis * lifted(system, state);
+}
+
+// Prop. 4: Runge-Kutta methods commute with linear maps, so the basis shows by its condition only.
+TEST(GeneralizedHamiltonianTest, VehicleInAnyBasis) {
+  const StepPlan plan = StepPlan::equal(0, 5, 50);
+  for (const int stages : {1, 2, 4}) {
+    const auto tableau = gauss_tableau<double>(stages);
+    const Vector<double, 10> expected = vehicle_end(tableau, plan);
+    for (unsigned seed = 0; seed <= 3; ++seed) {
+      const VehicleAnywhere scene = seed == 0 ? kOwn : test::in_random_basis(kCanonical, seed);
+      // cond(A) of round-off in the map, and ten by the steps and the tangent of the flow.
+      const double tolerance = 10 * scene.condition() * kEps;
+      const Vector<double, 10> end = generalized_end(scene, tableau, plan);
+      EXPECT_LE(test::relative_distance(end, expected), tolerance) << stages << ", " << seed;
+    }
+  }
+}
+
+// dz/d(q, p) along H_y = 0.
+template <class System>
+Matrix<double, System::kSize, 2 * System::kDof> tangent_of_graph(
+    const System& system, const State<double, System::kDof>& state) {
+  constexpr int n = System::kDof;
+  constexpr int m = System::kAlgebraic;
+  using J = Jet<double, 2 * n>;
+  const Vector<J, 2 * n> x = seeded(state.value);
+  const Vector<J, n> q = x.template head<n>();
+  const Vector<J, n> p = x.template tail<n>();
+  Vector<J, m> y = Vector<J, m>::Constant(J(0));
+  Rate<J, n> rate;
+  EXPECT_EQ(system.rate(J(0), q, p, y, rate), RateStatus::kOk);
+  const Vector<J, System::kSize> z = system.from_darboux(q, p, y);
+  Matrix<double, System::kSize, 2 * n> tangent;
+  for (int i = 0; i < System::kSize; ++i) tangent.row(i) = z[i].v.transpose();
+  return tangent;
+}
+
+// Z'J Z, Z the tangent of the flow in the scene's own coordinates, at the start and at the end.
+template <class Scene>
+void expect_form_is_preserved(const Scene& scene,
+                              int stages,
+                              const Vector<double, Scene::kSize>& start) {
+  using System = GeneralizedHamiltonian<Scene>;
+  constexpr int size = 2 * System::kDof;
+  const System system(scene);
+  const Matrix<double, Scene::kSize, Scene::kSize> j = scene.structure_matrix();
+  const auto tableau = gauss_tableau<double>(stages);
+  auto method = method_on(system, tableau);
+  auto state = start_at(system, start);
+  const Matrix<double, Scene::kSize, size> before = tangent_of_graph(system, state);
+  Compensated<Matrix<double, size, size>> m{Matrix<double, size, size>::Identity(),
+                                            Matrix<double, size, size>::Zero()};
+  const auto go_on = [](long, const auto&, const auto&) { return true; };
+  ASSERT_TRUE(tangent_flow(method, StepPlan::equal(0, 3, 30), state, m, go_on).completed());
+  const Matrix<double, Scene::kSize, size> after = tangent_of_graph(system, state) * m.value;
+  const Matrix<double, size, size> change =
+      after.transpose() * j * after - before.transpose() * j * before;
+  EXPECT_GT((after - before).norm(), 0.1 * before.norm()) << "something has moved";
+  // Round-off of the products of N terms, by their own size.
+  const double tolerance = 10 * Scene::kSize * kEps * after.squaredNorm() * j.norm();
+  EXPECT_LE(change.cwiseAbs().maxCoeff(), tolerance);
+}
+
+TEST(GeneralizedHamiltonianTest, PresymplecticFormIsPreserved) {
+  for (const int stages : {1, 2, 5}) {
+    const auto scene = test::in_random_basis(kCanonical, 6);
+    expect_form_is_preserved(scene, stages, scene.from_original(vehicle_start()));
+  }
+}
+
+// Prop. 3 and 4 without Darboux coordinates: J (z1 - z0) = h grad H(midpoint) solved for all of z
+// at once keeps dz ^ J dz for every z0, and its J z1 is that of the midpoint rule on (q, p).
+TEST(GeneralizedHamiltonianTest, MidpointRuleInAnyBasis) {
+  constexpr double kStep = 0.1;
+  const auto scene = test::in_random_basis(kCanonical, 8);
+  const Anywhere system(scene);
+  const Matrix<double, 10, 10> j = scene.structure_matrix();
+  const auto tableau = gauss_tableau<double>(1);
+  test::Generator generator(8);
+  for (int sample = 0; sample < 5; ++sample) {
+    auto state = start_at(system, scene.from_original(test::random_vector<10>(generator)));
+    const Vector<double, 10> z = lifted(system, state);
+    const test::NaiveMidpoint<VehicleAnywhere> naive(scene, kStep, z);
+    // The linear systems have a condition of about cond(A)^2.
+    const double tolerance = 10 * std::pow(scene.condition(), 2) * kEps;
+    EXPECT_LE(naive.residual, tolerance);
+    const Matrix<double, 10, 10> form = naive.tangent.transpose() * j * naive.tangent;
+    EXPECT_LE((form - j).cwiseAbs().maxCoeff(), tolerance * naive.tangent.squaredNorm());
+
+    auto midpoint = method_on(system, tableau);
+    ASSERT_EQ(midpoint.step(0, kStep, state).status, StepStatus::kOk);
+    const Vector<double, 10> end = lifted(system, state);
+    EXPECT_LE((j * (naive.end - end)).norm(), tolerance * j.norm());
+    const auto stage = system.to_darboux(naive.middle);
+    EXPECT_LE((stage.y - midpoint.algebraic(0)).norm(), tolerance);
+  }
+}
+
+// J z' = grad H(z) at random points of H_y = 0 in the scene's own coordinates, z' by Jets.
+TEST(GeneralizedHamiltonianTest, RateSolvesTheEquations) {
+  const auto scene = test::in_random_basis(kCanonical, 11);
+  const Anywhere system(scene);
+  test::Generator generator(11);
+  for (int sample = 0; sample < 20; ++sample) {
+    const auto state = start_at(system, test::random_vector<10>(generator));
+    Vector<double, 2> y(0, 0);
+    Vector<double, 8> velocity;
+    ASSERT_EQ(phase_rate(system, 0.0, state.value, y, velocity), RateStatus::kOk);
+    const Vector<double, 10> z = lifted(system, state);
+    const Vector<double, 10> z_dot = tangent_of_graph(system, state) * velocity;
+    const Vector<double, 10> slope =
+        gradient([&](const auto& x) { return scene.hamiltonian(x); }, z);
+    const Vector<double, 10> moved = scene.structure_matrix() * z_dot;
+    // Two maps by A, of what H_z is made of.
+    const double tolerance =
+        10 * std::pow(scene.condition(), 2) * kEps * std::max(1.0, z.squaredNorm());
+    EXPECT_LE((moved - slope).norm(), tolerance);
+  }
+}
+
+TEST(GeneralizedHamiltonianTest, DarbouxCoordinatesAndBack) {
+  const auto scene = test::in_random_basis(kCanonical, 12);
+  const Anywhere system(scene);
+  test::Generator generator(12);
+  const auto z = test::random_vector<10>(generator);
+  const auto point = system.to_darboux(z);
+  const double tolerance = 10 * scene.condition() * kEps;
+  EXPECT_LE((system.from_darboux(point.q, point.p, point.y) - z).norm(), tolerance);
+  EXPECT_NEAR(system.hamiltonian(0.0, point.q, point.p, point.y),
+              scene.hamiltonian(z),
+              tolerance * scene.hamiltonian(z));
+  // A canonical J keeps its coordinates.
+  const auto own = Anywhere(kOwn).to_darboux(z);
+  EXPECT_EQ(own.q, z.head<4>());
+  EXPECT_EQ(own.p, (z.segment<4>(4)));
+  EXPECT_EQ(own.y, z.tail<2>());
+}
+
+// J without a kernel: nothing to solve.
+struct Oscillator {
+  static constexpr int kSize = 2;
+  static constexpr int kDof = 1;
+  template <class T>
+  [[nodiscard]] T hamiltonian(const Vector<T, 2>& z) const {
+    return constant<T>(0.5) * (z[0] * z[0] + z[1] * z[1]);
+  }
+  // z2' = 2 z1, z1' = -2 z2.
+  [[nodiscard]] Matrix<double, 2, 2> structure_matrix() const {
+    Matrix<double, 2, 2> j;
+    j << 0, 0.5, -0.5, 0;
+    return j;
+  }
+};
+
+TEST(GeneralizedHamiltonianTest, RegularStructure) {
+  using System = GeneralizedHamiltonian<Oscillator>;
+  static_assert(System::kMultipliers == 0 && IndexOneSystem<System>);
+  const System system({});
+  const auto state = start_at(system, {0.3, 0.7});
+  Vector<double, 0> y;
+  Vector<double, 2> velocity;
+  ASSERT_EQ(phase_rate(system, 0.0, state.value, y, velocity), RateStatus::kOk);
+  const Vector<double, 2> z_dot = system.basis() * velocity;
+  EXPECT_NEAR(z_dot[0], -2 * 0.7, 4 * kEps);
+  EXPECT_NEAR(z_dot[1], 2 * 0.3, 4 * kEps);
+
+  EXPECT_EQ(system.branch(0, state.value.head<1>(), state.value.tail<1>(), y, y), RateStatus::kOk);
+  EXPECT_EQ(system.regularity(0, state.value.head<1>(), state.value.tail<1>(), y).condition, 1);
+}
+
+}  // namespace
+}  // namespace carnot
