@@ -1,0 +1,115 @@
+// A satellite turned by two wheels, its attitude a unit quaternion: no chart, no singularity.
+//
+// q = (w, x, y, z) rotates body to space, and 2 conj(q) q' = (0, omega) with the body rates omega
+// on |q| = 1. With the vectors q i, q j, q k (products of quaternions, linear in q)
+//
+//   omega_x = 2 (q i).q',   omega_y = 2 (q j).q',   g = omega_z = 2 (q k).q' = 0,   h = |q|^2 - 1,
+//
+// cost (j1 omega_x^2 + j2 omega_y^2 + omega_z^2)/2. M would be singular along q itself, a direction
+// that the manifold does not have: the cost counts 2 q.q' like a fourth rate, which is zero there.
+// Admissible velocities, off the manifold too: q' = (u1 q i + u2 q j + u3 q)/2.
+// q and -q are the same attitude. The scene satellite is the same in Euler angles.
+// Invariants: H and the angular momentum in space, (i q).p/2, (j q).p/2, (k q).p/2.
+#pragma once
+
+#include <array>
+
+#include "carnot/linear_algebra.h"
+#include "carnot/quaternion.h"
+#include "carnot/scalar.h"
+#include "carnot/scene_info.h"
+
+namespace carnot::scenes {
+
+struct SatelliteQuaternion {
+  static constexpr int kDof = 4;
+  static constexpr int kMultipliers = 1;
+  static constexpr int kHolonomic = 1;
+
+  double j1 = 1;  // moments of inertia about the body axes, relative to the third
+  double j2 = 1;
+
+  template <class T>
+  [[nodiscard]] Matrix<T, 4, 4> mass(const Vector<T, 4>& q) const {
+    const Matrix<T, 4, 4> rates = body_rates(q);
+    const Vector<T, 4> inertia(constant<T>(1), constant<T>(j1), constant<T>(j2), constant<T>(1));
+    Matrix<T, 4, 4> weighted = rates;
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j < 4; ++j) weighted(i, j) = inertia[i] * rates(i, j);
+    }
+    return product(rates.transpose(), weighted);
+  }
+
+  template <class T>
+  [[nodiscard]] Matrix<T, 1, 4> constraints(const Vector<T, 4>& q) const {
+    return body_rates(q).row(3);
+  }
+
+  template <class T>
+  [[nodiscard]] Vector<T, 1> holonomic(const Vector<T, 4>& q) const {
+    return Vector<T, 1>(dot(q, q) - constant<T>(1));
+  }
+
+  template <class T>
+  [[nodiscard]] Matrix<T, 4, 3> frame(const Vector<T, 4>& q) const {
+    const Matrix<T, 4, 4> rates = body_rates(q);
+    const T quarter = constant<T>(0.25);
+    Matrix<T, 4, 3> b;
+    for (int i = 0; i < 4; ++i) {
+      b(i, 0) = quarter * rates(1, i);
+      b(i, 1) = quarter * rates(2, i);
+      b(i, 2) = quarter * rates(0, i);
+    }
+    return b;
+  }
+
+  // B'M B: the rates of column j of B are |q|^2 times a unit vector.
+  template <class T>
+  [[nodiscard]] Matrix<T, 3, 3> frame_mass(const Vector<T, 4>& q) const {
+    const T square = dot(q, q);
+    const T scale = square * square;
+    Matrix<T, 3, 3> a = Matrix<T, 3, 3>::Constant(constant<T>(0));
+    a(0, 0) = constant<T>(j1) * scale;
+    a(1, 1) = constant<T>(j2) * scale;
+    a(2, 2) = scale;
+    return a;
+  }
+
+  // d/dq [p.B u - u'B'M B u/2]: B u = q c with the quaternion c = (u3, u1, u2, 0)/2.
+  template <class T>
+  [[nodiscard]] Vector<T, 4> frame_gradient(const Vector<T, 4>& q,
+                                            const Vector<T, 4>& p,
+                                            const Vector<T, 3>& u) const {
+    const T half = constant<T>(0.5);
+    const Vector<T, 4> conj_c(half * u[2], -half * u[0], -half * u[1], constant<T>(0));
+    const T energy = constant<T>(j1) * u[0] * u[0] + constant<T>(j2) * u[1] * u[1] + u[2] * u[2];
+    return quaternion_product(p, conj_c) - (constant<T>(2) * dot(q, q) * energy) * q;
+  }
+
+  static constexpr auto parameters() {
+    using P = Parameter<SatelliteQuaternion>;
+    return std::array{P{"j1",
+                        [](SatelliteQuaternion& s) -> double& { return s.j1; },
+                        "1",
+                        Range::positive(),
+                        "weight of the first body rate"},
+                      P{"j2",
+                        [](SatelliteQuaternion& s) -> double& { return s.j2; },
+                        "1",
+                        Range::positive(),
+                        "weight of the second body rate"}};
+  }
+
+  [[nodiscard]] SceneInfo info() const {
+    SceneInfo info;
+    info.name = "satellite-quaternion";
+    info.summary = "a satellite turned by two wheels, its attitude a unit quaternion";
+    info.kind = "velocity + holonomic constraints";
+    info.reference = "Boscain & Rossi, SIAM J. Control Optim. 47 (2008)";
+    info.configuration = {{"w", "1", 0}, {"x", "1", 0}, {"y", "1", 0}, {"z", "1", 0}};
+    info.symmetries.mirrors = {{-1, -1, -1, -1}, {1, 1, -1, -1}, {1, -1, 1, -1}, {1, -1, -1, 1}};
+    return info;
+  }
+};
+
+}  // namespace carnot::scenes

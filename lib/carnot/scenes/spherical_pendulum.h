@@ -1,0 +1,73 @@
+// A unit mass on a rigid massless rod, in space: no velocity constraint, one holonomic one.
+//
+//   h = x^2 + y^2 + z^2 - length^2,    V = gravity z,    M = I.
+//
+// Invariants: H, x p_y - y p_x.
+#pragma once
+
+#include <array>
+
+#include "carnot/linear_algebra.h"
+#include "carnot/scalar.h"
+#include "carnot/scene_info.h"
+
+namespace carnot::scenes {
+
+struct SphericalPendulum {
+  static constexpr int kDof = 3;
+  static constexpr int kMultipliers = 0;
+  static constexpr int kHolonomic = 1;
+
+  double length = 1;
+  double gravity = 1;  // acceleration along -z
+
+  template <class T>
+  [[nodiscard]] Matrix<T, 3, 3> mass(const Vector<T, 3>& /*q*/) const {
+    Matrix<T, 3, 3> m = Matrix<T, 3, 3>::Constant(constant<T>(0));
+    m(0, 0) = m(1, 1) = m(2, 2) = constant<T>(1);
+    return m;
+  }
+
+  template <class T>
+  [[nodiscard]] Matrix<T, 0, 3> constraints(const Vector<T, 3>& /*q*/) const {
+    return {};
+  }
+
+  template <class T>
+  [[nodiscard]] Vector<T, 1> holonomic(const Vector<T, 3>& q) const {
+    return Vector<T, 1>(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] - constant<T>(length * length));
+  }
+
+  template <class T>
+  [[nodiscard]] T potential(const Vector<T, 3>& q) const {
+    return constant<T>(gravity) * q[2];
+  }
+
+  static constexpr auto parameters() {
+    using P = Parameter<SphericalPendulum>;
+    return std::array{P{"length",
+                        [](SphericalPendulum& s) -> double& { return s.length; },
+                        "length",
+                        Range::positive(),
+                        "length of the rod"},
+                      P{"gravity",
+                        [](SphericalPendulum& s) -> double& { return s.gravity; },
+                        "length/time^2",
+                        Range::non_negative(),
+                        "acceleration along -z"}};
+  }
+
+  [[nodiscard]] SceneInfo info() const {
+    SceneInfo info;
+    info.name = "spherical-pendulum";
+    info.summary = "a mass on a rigid rod in space, with gravity";
+    info.kind = "velocity + holonomic constraints";
+    info.reference = "McLachlan, Modin, Verdier & Wilkins, SIAM J. Sci. Comput. 35 (2013), sec. 4";
+    info.configuration = {{"x", "length", 0}, {"y", "length", 0}, {"z", "length", 0}};
+    info.symmetries.mirrors = {{-1, 1, 1}, {1, -1, 1}};
+    info.drawing.view = Drawing::View::kSpace;
+    return info;
+  }
+};
+
+}  // namespace carnot::scenes
