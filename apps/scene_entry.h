@@ -1,16 +1,15 @@
 // Scenes without their types: what the subcommands know of a scene.
 //
-// make_entry<Scene>() turns a scene into data and one function that makes a Segment, for 1 to 8
-// stages. It is instantiated in one source file per scene; scene_registry() lists them all.
+// make_entry<Scene>() turns a scene into data and one function that makes a Segment. It is
+// instantiated in one source file per scene; scene_registry() lists them all.
 #pragma once
 
 #include <functional>
 #include <map>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "carnot/segment.h"
+#include "carnot/make_segment.h"
 
 namespace carnot::apps {
 
@@ -29,10 +28,12 @@ struct SceneEntry {
   SceneInfo info;
   int dof = 0;
   int multipliers = 0;
+  int holonomic = 0;
   std::vector<ParameterInfo> parameters;
-  // A Segment with the Gauss method of 1 to 8 stages. Throws std::invalid_argument on parameters
-  // out of range.
-  std::function<Segment(const ParameterValues&, int stages)> make;
+  // Whether a method can integrate the scene.
+  bool (*suits)(const Method&) = nullptr;
+  // Throws std::invalid_argument on parameters out of range and methods that do not suit.
+  std::function<Segment(const ParameterValues&, const std::string& method)> make;
 };
 
 // In the order of the house; made on first use.
@@ -51,36 +52,14 @@ Scene with_parameters([[maybe_unused]] const ParameterValues& values) {
 }
 
 template <class Scene>
-Segment make_segment(const Scene& scene, int stages) {
-  switch (stages) {
-    case 1:
-      return make_gauss_segment<1>(scene);
-    case 2:
-      return make_gauss_segment<2>(scene);
-    case 3:
-      return make_gauss_segment<3>(scene);
-    case 4:
-      return make_gauss_segment<4>(scene);
-    case 5:
-      return make_gauss_segment<5>(scene);
-    case 6:
-      return make_gauss_segment<6>(scene);
-    case 7:
-      return make_gauss_segment<7>(scene);
-    case 8:
-      return make_gauss_segment<8>(scene);
-    default:
-      throw std::invalid_argument("stages " + std::to_string(stages) + " must be from 1 to 8");
-  }
-}
-
-template <class Scene>
 SceneEntry make_entry() {
   SceneEntry entry;
   Scene scene;
   entry.info = describe_scene(scene);
   entry.dof = Scene::kDof;
-  entry.multipliers = Scene::kMultipliers;
+  entry.multipliers = decltype(make_system(scene))::kMultipliers;
+  if constexpr (HasHolonomic<Scene>) entry.holonomic = Scene::kHolonomic;
+  entry.suits = carnot::suits<Scene>;
   if constexpr (HasParameters<Scene>) {
     for (const auto& parameter : Scene::parameters()) {
       entry.parameters.push_back({parameter.name,
@@ -90,8 +69,8 @@ SceneEntry make_entry() {
                                   parameter.meaning});
     }
   }
-  entry.make = [](const ParameterValues& values, int stages) {
-    return make_segment(with_parameters<Scene>(values), stages);
+  entry.make = [](const ParameterValues& values, const std::string& method) {
+    return make_segment(with_parameters<Scene>(values), method);
   };
   return entry;
 }

@@ -6,10 +6,13 @@
 //
 //   p0 = -D1 F_d = F_v - h F_q / 2,      p1 = D2 F_d = F_v + h F_q / 2,
 //
-// so a relaxation of the path needs no guess of p0 and yields a discrete costate.
+// so a relaxation of the path needs no guess of p0 and yields a discrete costate. Rows of G that
+// are dependent leave lambda undetermined: a scene that has such says by a projector P(q) =
+// gauge(q) along which, and -lambda'P lambda/2 is added to L, which makes P lambda = 0.
 #pragma once
 
 #include <cmath>
+#include <concepts>
 #include <type_traits>
 
 #include "carnot/cholesky.h"
@@ -48,12 +51,28 @@ template <class Scene, class T>
   return true;
 }
 
-// First and, where asked for, second derivatives of l(q, v) = L - lambda.G v at fixed lambda.
+template <class S>
+concept HasGauge = requires(const S& scene, const Vector<double, S::kDof>& q) {
+  { scene.gauge(q) } -> std::convertible_to<Matrix<double, S::kMultipliers, S::kMultipliers>>;
+};
+
+// P(q) lambda.
+template <HasGauge Scene, class T>
+Vector<T, Scene::kMultipliers> gauge_part(const Scene& scene,
+                                          const Vector<T, Scene::kDof>& q,
+                                          const Vector<double, Scene::kMultipliers>& lambda) {
+  Vector<T, Scene::kMultipliers> l;
+  for (int i = 0; i < Scene::kMultipliers; ++i) l[i] = constant<T>(lambda[i]);
+  return product(scene.gauge(q), l);
+}
+
+// First and, where asked for, second derivatives of l(q, v) = L - lambda.G v - lambda'P lambda/2 at
+// fixed lambda.
 template <int n, int k>
 struct AugmentedLagrangian {
   Vector<double, n> l_q;
   Vector<double, n> l_v;  // M v - G' lambda, the momentum
-  Vector<double, k> g;    // G v
+  Vector<double, k> g;    // G v + P lambda
   Matrix<double, n, n> l_qq;
   Matrix<double, n, n> l_vq;  // row: v, column: q
   Matrix<double, n, n> l_vv;  // M
@@ -78,12 +97,22 @@ void augmented_lagrangian(const VelocityConstraints<Scene>& system,
     T sum = system.lagrangian(x, velocity);
     const Vector<T, k> g = system.constraint(x, velocity);
     for (int i = 0; i < k; ++i) sum -= constant<T>(lambda[i]) * g[i];
+    if constexpr (HasGauge<Scene>) {
+      const Vector<T, k> kept = gauge_part(system.scene(), x, lambda);
+      for (int i = 0; i < k; ++i) sum -= constant<T>(0.5 * lambda[i]) * kept[i];
+    }
     return sum;
+  };
+  const auto rows = [&](const auto& x, const auto& velocity) {
+    using T = typename std::decay_t<decltype(x)>::Scalar;
+    Vector<T, k> g = system.constraint(x, velocity);
+    if constexpr (HasGauge<Scene>) g += gauge_part(system.scene(), x, lambda);
+    return g;
   };
   if (!second) {
     out.l_q = gradient(value, q);
     out.l_v = system.momentum(q, v, lambda);
-    out.g = system.constraint(q, v);
+    out.g = rows(q, v);
     return;
   }
   using J = Jet<double, n>;
@@ -91,7 +120,7 @@ void augmented_lagrangian(const VelocityConstraints<Scene>& system,
   const Vector<J, n> vj = unseeded<J>(v);
   const Vector<J, n> l_q = gradient(value, x);
   const Vector<J, n> l_v = system.momentum(x, vj, Vector<J, k>(unseeded<J>(lambda)));
-  const Vector<J, k> g = system.constraint(x, vj);
+  const Vector<J, k> g = rows(x, vj);
   for (int i = 0; i < n; ++i) {
     out.l_q[i] = l_q[i].a;
     out.l_v[i] = l_v[i].a;
@@ -141,6 +170,10 @@ void discrete_lagrangian(
   hessian->template block<n, n>(n, 0) = hessian->template block<n, n>(0, n).transpose();
   hessian->template block<k, n>(2 * n, 0) = l.g_v - 0.5 * h * l.g_q;
   hessian->template block<k, n>(2 * n, n) = -l.g_v - 0.5 * h * l.g_q;
+  if constexpr (HasGauge<Scene>) {
+    hessian->template bottomRightCorner<k, k>() =
+        -h * system.scene().gauge(Vector<double, n>(0.5 * (q0 + q1)));
+  }
   hessian->template topRightCorner<2 * n, k>() =
       hessian->template bottomLeftCorner<k, 2 * n>().transpose();
 }

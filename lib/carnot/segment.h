@@ -1,32 +1,32 @@
-// Where templates end: a scene and a method behind a handful of function pointers.
+// A scene and a method behind a handful of function pointers: where templates end.
 //
-// Relaxation, shooting, NLopt and the apps are compiled once against this struct. All arguments are
-// plain double pointers: q, p of length n, lambda and g of length k, z = (q, p) of length 2n. One
-// indirect call per trajectory; inside it everything is inlined.
+// Relaxation, shooting, NLopt and the apps are compiled once against this struct; make_segment.h
+// makes one. All arguments are plain double pointers: q, p of length n, lambda and g of length k,
+// z = (q, p) of length 2n. One indirect call per trajectory; inside it everything is inlined.
 #pragma once
 
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
-#include "carnot/audit.h"
-#include "carnot/midpoint_transcription.h"
+#include "carnot/flow.h"
 #include "carnot/scene_info.h"
-#include "carnot/tangent_flow.h"
 #include "carnot/trajectory.h"
-#include "carnot/velocity_constraints.h"
 
 namespace carnot {
 
-// What a run of a Segment measured. `action` and what follows only from audited_flow().
+// What a run of a Segment measured. All but `report` only from audited_flow(); see audit.h.
 struct FlowSummary {
   FlowReport report;
   double action = 0;
-  double length = 0;
+  double length = 0;  // NaN where the scene has no metric
   double energy_drift = 0;
+  double energy_balance = 0;
   double constraint_error = 0;
+  double holonomic_error = 0;
   Trajectory trajectory;
 
   [[nodiscard]] bool completed() const { return report.completed(); }
@@ -44,13 +44,25 @@ struct AuditOptions {
 // H, velocity and multipliers at one phase point.
 struct PointValues {
   RateStatus status = RateStatus::kOk;
+  std::optional<Regularity> regularity;  // of H_yy, where y is found by Newton's method
   double hamiltonian = std::numeric_limits<double>::quiet_NaN();
+};
+
+// How far a phase point is from the manifold of the holonomic constraints.
+struct HolonomicResiduals {
+  double position = 0;                                         // max |h(q)|
+  double velocity = std::numeric_limits<double>::quiet_NaN();  // max |Dh q'| / |q'|
 };
 
 struct Segment {
   int dof = 0;
   int multipliers = 0;
+  int transcribed = 0;     // constraints of the midpoint transcription; k for velocity constraints
+  int holonomic = 0;       // number of constraints h(q) = 0
+  bool autonomous = true;  // H does not depend on time
+  std::string method;
   int order = 0;
+  bool symplectic = true;
   SceneInfo info;
   std::shared_ptr<const void> system;
 
@@ -73,10 +85,39 @@ struct Segment {
       double t, const double* q, const double* p, double* q_dot, double* lambda) const {
     return calls.evaluate(system.get(), t, q, p, q_dot, lambda);
   }
-  // p = M q' - G' lambda; the velocity is projected on ker G first. Returns |G q'| / |q'| before.
-  double momentum(const double* q, double* q_dot, const double* lambda, double* p) const {
-    return calls.momentum(system.get(), q, q_dot, lambda, p);
+  // p of the velocity, which is projected on the admissible ones first. Returns the relative
+  // violation before, NaN on failure.
+  double momentum(double t, const double* q, double* q_dot, const double* lambda, double* p) const {
+    return calls.momentum(system.get(), t, q, q_dot, lambda, p);
   }
+  // The same Segment on the branch of H_y = 0 through the multipliers nearest to `lambda` at
+  // (t, q, p); nothing where the scene has one branch only, or none is found.
+  [[nodiscard]] std::optional<Segment> on_branch(double t,
+                                                 const double* q,
+                                                 const double* p,
+                                                 const double* lambda) const {
+    if (calls.branch == nullptr) return std::nullopt;
+    Segment segment = *this;
+    segment.system = calls.branch(system.get(), t, q, p, lambda);
+    if (segment.system == nullptr) return std::nullopt;
+    return segment;
+  }
+  [[nodiscard]] bool has_branches() const { return calls.branch != nullptr; }
+
+  // With holonomic constraints only, at z = (q, p): residuals; the nearest point of the manifold,
+  // false where there is none; the orthogonal projector on its tangent space, 2n x 2n.
+  [[nodiscard]] HolonomicResiduals holonomic_residuals(double t, const double* z) const {
+    return calls.holonomic_residuals(system.get(), t, z);
+  }
+  [[nodiscard]] bool project_on_manifold(double t, double* z) const {
+    return calls.project_on_manifold(system.get(), t, z);
+  }
+  [[nodiscard]] bool tangent_projector(double t, const double* z, double* projector) const {
+    return calls.tangent_projector(system.get(), t, z, projector);
+  }
+
+  // Whether there is a direct midpoint transcription; k stands for `transcribed` in what follows.
+  [[nodiscard]] bool has_transcription() const { return calls.midpoint != nullptr; }
   // Terms of one midpoint interval at (qm, v): r (n), c (k), V (1), stacked; jacobian row-major
   // (n + k + 1) x 2n with respect to (qm, v), may be null.
   [[nodiscard]] bool midpoint(const double* qm,
@@ -91,204 +132,27 @@ struct Segment {
   void discrete_lagrangian(double h, const double* x, double* gradient, double* hessian) const {
     calls.discrete_lagrangian(system.get(), h, x, gradient, hessian);
   }
+  // The multipliers of the transcription at a phase point.
+  void midpoint_multipliers(const double* q, const double* p, double* lambda) const {
+    calls.midpoint_multipliers(system.get(), q, p, lambda);
+  }
 
   struct Calls {
     FlowReport (*flow)(const void*, const StepPlan&, double*);
     FlowReport (*tangent_flow)(const void*, const StepPlan&, double*, double*);
     FlowSummary (*audited_flow)(const void*, const StepPlan&, double*, const AuditOptions&);
     PointValues (*evaluate)(const void*, double, const double*, const double*, double*, double*);
-    double (*momentum)(const void*, const double*, double*, const double*, double*);
+    double (*momentum)(const void*, double, const double*, double*, const double*, double*);
+    std::shared_ptr<const void> (*branch)(
+        const void*, double, const double*, const double*, const double*);
+    HolonomicResiduals (*holonomic_residuals)(const void*, double, const double*);
+    bool (*project_on_manifold)(const void*, double, double*);
+    bool (*tangent_projector)(const void*, double, const double*, double*);
     bool (*midpoint)(const void*, const double*, const double*, double*, double*);
     void (*discrete_lagrangian)(const void*, double, const double*, double*, double*);
+    void (*midpoint_multipliers)(const void*, const double*, const double*, double*);
   };
   Calls calls{};
 };
-
-namespace segment_calls {
-
-template <class Step>
-const typename Step::System& cast(const void* system) {
-  return *static_cast<const typename Step::System*>(system);
-}
-
-template <class Step>
-State<double, Step::kDof> load(const double* z) {
-  return {view<Step::kSize>(z), Vector<double, Step::kSize>::Zero()};
-}
-
-template <class Step>
-FlowReport flow(const void* system, const StepPlan& plan, double* z) {
-  Step stepper(cast<Step>(system));
-  auto state = load<Step>(z);
-  const FlowReport report = carnot::flow(stepper, plan, state);
-  view<Step::kSize>(z) = state.value;
-  return report;
-}
-
-template <class Step>
-FlowReport tangent_flow(const void* system, const StepPlan& plan, double* z, double* m) {
-  using Square = Matrix<double, Step::kSize, Step::kSize>;
-  Step stepper(cast<Step>(system));
-  auto state = load<Step>(z);
-  Compensated<Square> tangent{Square::Identity(), Square::Zero()};
-  const FlowReport report = carnot::tangent_flow(
-      stepper, plan, state, tangent, [](long, const Step&, const auto&) { return true; });
-  view<Step::kSize>(z) = state.value;
-  using RowMajor = Eigen::Matrix<double, Step::kSize, Step::kSize, Eigen::RowMajor>;
-  Eigen::Map<RowMajor> out(m);
-  out = tangent.value;
-  return report;
-}
-
-template <class Step>
-FlowSummary audited_flow(const void* opaque,
-                         const StepPlan& plan,
-                         double* z,
-                         const AuditOptions& options) {
-  constexpr long kProgressEvery = 256;
-  const auto& system = cast<Step>(opaque);
-  Step stepper(system);
-  auto state = load<Step>(z);
-  Audit<Step> audit(system, plan.start, state);
-  Recorder<Step> recorder(
-      system,
-      plan,
-      options.times.empty() ? sample_times(plan, options.samples) : options.times,
-      state);
-  FlowSummary summary;
-  summary.report =
-      carnot::flow(stepper, plan, state, [&](long i, const Step& step, const auto& node) {
-        audit(plan.time(i + 1), step, node);
-        if (!std::isfinite(audit.energy_drift())) return false;
-        recorder(i, node);
-        if (!options.progress || i % kProgressEvery != 0) return true;
-        return options.progress(static_cast<double>(i) / static_cast<double>(plan.count));
-      });
-  view<Step::kSize>(z) = state.value;
-  if (!std::isfinite(audit.energy_drift())) {
-    summary.report.status = FlowStatus::kStepFailed;
-    summary.report.last.status = StepStatus::kRateFailed;
-    summary.report.last.rate = RateStatus::kNotFinite;
-  }
-  summary.action = audit.action();
-  summary.length = audit.length();
-  summary.energy_drift = audit.energy_drift();
-  summary.constraint_error = audit.constraint_error();
-  summary.trajectory = recorder.trajectory();
-  return summary;
-}
-
-template <class System>
-PointValues evaluate(const void* opaque,
-                     double t,
-                     const double* q_in,
-                     const double* p_in,
-                     double* q_dot,
-                     double* lambda_out) {
-  using Q = Vector<double, System::kDof>;
-  const auto& system = *static_cast<const System*>(opaque);
-  const Q q = view<System::kDof>(q_in);
-  const Q p = view<System::kDof>(p_in);
-  Vector<double, System::kAlgebraic> y = Vector<double, System::kAlgebraic>::Zero();
-  Vector<double, System::kMultipliers> lambda = Vector<double, System::kMultipliers>::Zero();
-  Rate<double, System::kDof> rate;
-  PointValues values;
-  values.status = system.rate(t, q, p, y, rate);
-  if (values.status != RateStatus::kOk) return values;
-  values.status = system.multipliers(q, p, rate.q_dot, lambda);
-  values.hamiltonian = system.hamiltonian(t, q, p, y);
-  view<System::kDof>(q_dot) = rate.q_dot;
-  view<System::kMultipliers>(lambda_out) = lambda;
-  return values;
-}
-
-template <class System>
-double momentum(
-    const void* opaque, const double* q_in, double* q_dot, const double* lambda, double* p) {
-  using Q = Vector<double, System::kDof>;
-  using K = Vector<double, System::kMultipliers>;
-  const auto& system = *static_cast<const System*>(opaque);
-  const Q q = view<System::kDof>(q_in);
-  Q v = view<System::kDof>(q_dot);
-  const double size = v.norm();
-  const double violated = system.constraint(q, v).norm();
-  if (system.project(q, v) != RateStatus::kOk) v.setConstant(std::nan(""));
-  view<System::kDof>(q_dot) = v;
-  view<System::kDof>(p) = system.momentum(q, v, K(view<System::kMultipliers>(lambda)));
-  return size > 0 ? violated / size : 0;
-}
-
-template <class System>
-bool midpoint(
-    const void* opaque, const double* qm_in, const double* v_in, double* terms, double* jacobian) {
-  constexpr int n = System::kDof;
-  constexpr int k = System::kMultipliers;
-  const auto& system = *static_cast<const System*>(opaque);
-  const Vector<double, n> qm = view<n>(qm_in);
-  const Vector<double, n> v = view<n>(v_in);
-  if (jacobian == nullptr) {
-    MidpointTerms<double, n, k> out;
-    if (!midpoint_terms(system, qm, v, out)) return false;
-    for (int i = 0; i < n; ++i) terms[i] = out.r[i];
-    for (int i = 0; i < k; ++i) terms[n + i] = out.c[i];
-    terms[n + k] = out.potential;
-    return true;
-  }
-  using J = Jet<double, 2 * n>;
-  Vector<J, n> qj;
-  Vector<J, n> vj;
-  for (int i = 0; i < n; ++i) {
-    qj[i] = J(qm[i], i);
-    vj[i] = J(v[i], n + i);
-  }
-  MidpointTerms<J, n, k> out;
-  if (!midpoint_terms(system, qj, vj, out)) return false;
-  const auto store = [&](int row, const J& x) {
-    terms[row] = x.a;
-    view<2 * n>(jacobian + row * 2 * n) = x.v;
-  };
-  for (int i = 0; i < n; ++i) store(i, out.r[i]);
-  for (int i = 0; i < k; ++i) store(n + i, out.c[i]);
-  store(n + k, out.potential);
-  return true;
-}
-
-template <class System>
-void discrete_lagrangian(
-    const void* opaque, double h, const double* x_in, double* gradient_out, double* hessian) {
-  constexpr int m = 2 * System::kDof + System::kMultipliers;
-  const auto& system = *static_cast<const System*>(opaque);
-  const Vector<double, m> x = view<m>(x_in);
-  Vector<double, m> slope;
-  Matrix<double, m, m> second;
-  carnot::discrete_lagrangian(system, h, x, slope, hessian != nullptr ? &second : nullptr);
-  view<m>(gradient_out) = slope;
-  if (hessian != nullptr) view<m * m>(hessian) = view<m * m>(second.data());
-}
-
-}  // namespace segment_calls
-
-// A Segment of the scene with the Gauss method of s stages (order 2s). Throws
-// std::invalid_argument when a parameter of the scene is out of its range.
-template <int s, VelocityConstrainedScene Scene>
-Segment make_gauss_segment(const Scene& scene) {
-  validate(scene);
-  using System = VelocityConstraints<Scene>;
-  using Step = Gauss<System, s>;
-  Segment segment;
-  segment.dof = Scene::kDof;
-  segment.multipliers = Scene::kMultipliers;
-  segment.order = Step::kOrder;
-  segment.info = describe_scene(scene);
-  segment.system = std::make_shared<const System>(scene);
-  segment.calls = {segment_calls::flow<Step>,
-                   segment_calls::tangent_flow<Step>,
-                   segment_calls::audited_flow<Step>,
-                   segment_calls::evaluate<System>,
-                   segment_calls::momentum<System>,
-                   segment_calls::midpoint<System>,
-                   segment_calls::discrete_lagrangian<System>};
-  return segment;
-}
 
 }  // namespace carnot

@@ -2,6 +2,7 @@
 //
 // Martinet's flat structure with a mass in z: M = I, g = (y^2/2, 0, -1), so z' = y^2 x'/2. No
 // frame, no names, no derivatives: only what a scene must have.
+#include <carnot/make_segment.h>
 #include <carnot/shooting/geodesic.h>
 
 #include <cmath>
@@ -44,7 +45,8 @@ double endpoint_error(const carnot::BoundaryValueProblem& problem,
 }  // namespace
 
 int main() {
-  const carnot::BoundaryValueProblem problem(Ramp{}, {0, 0.5, 0}, {1, 1, 0.4});
+  const carnot::BoundaryValueProblem problem(
+      carnot::make_segment(Ramp{}), {0, 0.5, 0}, {1, 1, 0.4});
   const carnot::GeodesicReport report = carnot::find_geodesics(problem);
   if (report.status != carnot::GeodesicStatus::kConverged || report.geodesics.empty()) {
     std::cerr << "no geodesic: " << report.message << '\n';

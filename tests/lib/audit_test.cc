@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "carnot/flow.h"
+#include "carnot/gauss.h"
 #include "testing/runs.h"
 
 namespace carnot {
@@ -32,7 +33,7 @@ Measured measure(const Scene& scene,
   const System system(scene);
   Step step(system);
   auto z = start;
-  Audit<Step> audit(system, plan.start, z);
+  Audit<Step> audit(system, plan.start, step, z);
   const FlowReport report = flow(step, plan, z, [&](long i, const Step& done, const auto& node) {
     audit(plan.time(i + 1), done, node);
     return true;
@@ -127,7 +128,7 @@ TEST(AuditDriftTest, SeesTheEnergyErrorOfACoarseRun) {
   const System system{{}};
   auto z = test::vehicle_start(system);
   Step step(system);
-  Audit<Step> audit(system, 0, z);
+  Audit<Step> audit(system, 0, step, z);
   const StepPlan plan = StepPlan::equal(0, 3, 15);
   ASSERT_TRUE(flow(step, plan, z, [&](long i, const Step& done, const auto& node) {
                 audit(plan.time(i + 1), done, node);

@@ -7,7 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "carnot/segment.h"
+#include "carnot/gauss.h"
+#include "carnot/make_segment.h"
 #include "testing/runs.h"
 
 namespace carnot {
@@ -29,7 +30,7 @@ class MidpointTest : public ::testing::Test {
   using Unknowns = Vector<double, kUnknowns>;
 
   const VelocityConstraints<Scene> system_{test::uneven<Scene>()};
-  const Segment segment_ = make_gauss_segment<1>(test::uneven<Scene>());
+  const Segment segment_ = make_segment(test::uneven<Scene>(), "midpoint");
   test::Generator generator_{1};
 
   [[nodiscard]] Vector<double, kTerms> terms(const Vector<double, 2 * kDof>& x) const {

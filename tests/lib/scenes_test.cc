@@ -8,6 +8,7 @@
 #include <string>
 
 #include "carnot/flow.h"
+#include "carnot/gauss.h"
 #include "testing/reference.h"
 #include "testing/runs.h"
 

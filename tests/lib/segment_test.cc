@@ -1,6 +1,4 @@
 // The calls of a Segment against the templates behind them.
-#include "carnot/segment.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "carnot/gauss.h"
+#include "carnot/make_segment.h"
 #include "testing/runs.h"
 
 namespace carnot {
@@ -24,7 +24,7 @@ class SegmentTest : public ::testing::Test {
  protected:
   const scenes::VehicleCosine scene_ = test::uneven<scenes::VehicleCosine>();
   const System system_{scene_};
-  const Segment segment_ = make_gauss_segment<1>(scene_);
+  const Segment segment_ = make_segment(scene_, "midpoint");
   const State<double, n> start_ = test::vehicle_start(system_);
   const StepPlan plan_ = StepPlan::of_length(0, 1, 0.15);
 };
@@ -113,7 +113,7 @@ TEST_F(SegmentTest, EvaluateAndMomentumAgree) {
     Vector<double, n> back;
     Vector<double, n> projected = v;
     const double violated =
-        segment_.momentum(q.data(), projected.data(), lambda.data(), back.data());
+        segment_.momentum(0, q.data(), projected.data(), lambda.data(), back.data());
     EXPECT_LE(violated, 64 * kEps);
     EXPECT_LE((projected - v).cwiseAbs().maxCoeff(), 64 * kEps);
     EXPECT_LE((back - p).cwiseAbs().maxCoeff(), 256 * kEps);
@@ -126,11 +126,11 @@ TEST_F(SegmentTest, MomentumProjectsTheVelocityAndSaysHowFar) {
   const double violated = system_.constraint(q, v).norm() / 5;
   const Vector<double, k> lambda(0, 0);
   Vector<double, n> p;
-  EXPECT_DOUBLE_EQ(segment_.momentum(q.data(), v.data(), lambda.data(), p.data()), violated);
+  EXPECT_DOUBLE_EQ(segment_.momentum(0, q.data(), v.data(), lambda.data(), p.data()), violated);
   EXPECT_LE(system_.constraint(q, v).norm(), 8 * kEps);
   EXPECT_NEAR(v[0], 3, 8 * kEps);
   Vector<double, n> rest(0, 0, 0, 0);
-  EXPECT_EQ(segment_.momentum(q.data(), rest.data(), lambda.data(), p.data()), 0);
+  EXPECT_EQ(segment_.momentum(0, q.data(), rest.data(), lambda.data(), p.data()), 0);
 }
 
 // A message of validate() names the parameter.
@@ -166,7 +166,7 @@ TEST(ValidateTest, NamesTheParameter) {
 TEST(ValidateTest, ASegmentOfABadSceneIsRefused) {
   const scenes::VehicleCosine bad{{1, -2.5, 1}};
   try {
-    (void)make_gauss_segment<1>(bad);
+    (void)make_segment(bad, "midpoint");
     FAIL() << "not refused";
   } catch (const std::invalid_argument& error) {
     EXPECT_NE(std::string(error.what()).find("-2.5"), std::string::npos) << error.what();

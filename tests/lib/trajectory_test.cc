@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "carnot/gauss.h"
 #include "testing/runs.h"
 
 namespace carnot {
@@ -22,9 +23,9 @@ class TrajectoryTest : public ::testing::Test {
   // The recorded run; the final state in z.
   Trajectory record(const StepPlan& plan, long samples, State<double, 4>& z) const {
     Step step(system_);
-    Recorder<Step> recorder(system_, plan, samples, z);
-    const FlowReport report = flow(step, plan, z, [&](long i, const Step&, const auto& node) {
-      recorder(i, node);
+    Recorder<Step> recorder(plan, samples, step, z);
+    const FlowReport report = flow(step, plan, z, [&](long i, const Step& done, const auto& node) {
+      recorder(i, done, node);
       return true;
     });
     EXPECT_TRUE(report.completed());

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "carnot/make_segment.h"
 #include "carnot/scenes/heisenberg_group.h"
 #include "carnot/scenes/unicycle.h"
 #include "carnot/scenes/vehicle.h"
@@ -33,7 +34,7 @@ struct Oscillator {
 }  // namespace
 
 BoundaryValueProblem vehicle(std::vector<double> from, std::vector<double> to, double time) {
-  return {scenes::Vehicle{}, std::move(from), std::move(to), time};
+  return {make_segment(scenes::Vehicle{}), std::move(from), std::move(to), time};
 }
 
 BoundaryValueProblem sideways() { return vehicle({0, 0, 0, 0}, {0, 1, 0, 0}); }
@@ -43,25 +44,25 @@ BoundaryValueProblem straight_ahead() { return vehicle({0, 0, 0, 0}, {1, 0, 0, 0
 BoundaryValueProblem long_vehicle(std::vector<double> from, std::vector<double> to, double length) {
   scenes::Vehicle scene;
   scene.length = length;
-  return {scene, std::move(from), std::move(to)};
+  return {make_segment(scene), std::move(from), std::move(to)};
 }
 
 BoundaryValueProblem vehicle_cosine(std::vector<double> from, std::vector<double> to, double time) {
-  return {scenes::VehicleCosine{}, std::move(from), std::move(to), time};
+  return {make_segment(scenes::VehicleCosine{}), std::move(from), std::move(to), time};
 }
 
 BoundaryValueProblem heisenberg_group(std::vector<double> to, double time) {
-  return {scenes::HeisenbergGroup{}, {0, 0, 0}, std::move(to), time};
+  return {make_segment(scenes::HeisenbergGroup{}), {0, 0, 0}, std::move(to), time};
 }
 
 BoundaryValueProblem unicycle(std::vector<double> from, std::vector<double> to) {
-  return {scenes::Unicycle{}, std::move(from), std::move(to)};
+  return {make_segment(scenes::Unicycle{}), std::move(from), std::move(to)};
 }
 
 BoundaryValueProblem oscillator(std::vector<double> from, std::vector<double> to, double time) {
-  return {Oscillator{}, std::move(from), std::move(to), time};
+  return {make_segment(Oscillator{}), std::move(from), std::move(to), time};
 }
 
-Segment vehicle_midpoint() { return make_gauss_segment<1>(scenes::Vehicle{}); }
+Segment vehicle_midpoint() { return make_segment(scenes::Vehicle{}, "midpoint"); }
 
 }  // namespace carnot::test

@@ -15,23 +15,15 @@ struct BoundaryValueProblem {
   std::vector<double> to;    // q(T), length n
   double time = 1;           // T > 0
 
+  // make_segment.h makes a Segment of a scene.
   BoundaryValueProblem(Segment dynamics,
                        std::vector<double> start,
                        std::vector<double> target,
-                       double duration)
+                       double duration = 1)
       : segment(std::move(dynamics)),
         from(std::move(start)),
         to(std::move(target)),
         time(duration) {}
-
-  // A scene with gauss16.
-  template <VelocityConstrainedScene Scene>
-  BoundaryValueProblem(const Scene& scene,
-                       std::vector<double> start,
-                       std::vector<double> target,
-                       double duration = 1)
-      : BoundaryValueProblem(
-            make_gauss_segment<8>(scene), std::move(start), std::move(target), duration) {}
 
   // Throws std::invalid_argument: wrong lengths, values that are not finite, T <= 0, constraints
   // that are dependent at an end.

@@ -72,7 +72,8 @@ bool can_begin(const ShootingEquations& equations, const Knots& knots) {
   return true;
 }
 
-ceres::Solver::Options solver_options(const ShootingOptions& options) {
+ceres::Solver::Options solver_options(const BoundaryValueProblem& problem,
+                                      const ShootingOptions& options) {
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;
   solver.max_num_iterations = options.max_iterations;
@@ -80,6 +81,8 @@ ceres::Solver::Options solver_options(const ShootingOptions& options) {
   solver.gradient_tolerance = 0;
   solver.parameter_tolerance = 1e-15;
   solver.initial_trust_region_radius = 1e6;  // the start is good: nearly Newton's method
+  // Momenta along the rows of Dh move nothing: columns of zeros that need a diagonal.
+  if (problem.segment.holonomic > 0) solver.min_lm_diagonal = 1e-2;
   solver.num_threads = 1;
   solver.logging_type = ceres::SILENT;
   return solver;
@@ -105,7 +108,7 @@ Shooting shoot_with_ceres(const BoundaryValueProblem& problem,
   }
   joined.SetParameterBlockConstant(knots.at(0));
   StopWhenJoined stop(options.tolerance);
-  ceres::Solver::Options solver = solver_options(options);
+  ceres::Solver::Options solver = solver_options(problem, options);
   solver.callbacks.push_back(&stop);
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &joined, &summary);

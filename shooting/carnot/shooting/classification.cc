@@ -39,9 +39,9 @@ void classify_singular(const BoundaryValueProblem& problem, Geodesic& geodesic) 
   const auto way = end_point_jacobian(problem, geodesic.p0, kOnTheWay * problem.time, steps, z);
   const auto end = end_point_jacobian(problem, geodesic.p0, problem.time, steps, z);
   if (!way || !end) return;
-  const int always = nullity(*way);
+  const int always = nullity(*way) - problem.segment.holonomic;
   geodesic.abnormal = always > 0;
-  geodesic.family_dimension = std::max(0, nullity(*end) - always);
+  geodesic.family_dimension = std::max(0, nullity(*end) - nullity(*way));
   if (*geodesic.family_dimension > 0) geodesic.label = Label::kSingular;
 }
 
@@ -53,7 +53,8 @@ void complete(const BoundaryValueProblem& problem, long samples, Extremal& extre
   add_extremes(problem, extremal.knots, steps, geodesic);
   if (samples > 0) geodesic.trajectory = survey(problem, extremal.knots, steps, samples).trajectory;
   if (geodesic.verification == Verification::kSingle) classify_singular(problem, geodesic);
-  if (geodesic.abnormal.value_or(false)) return;  // dq/dp0 is singular at all times
+  // dq/dp0 is singular at all times.
+  if (geodesic.abnormal.value_or(false) || problem.segment.holonomic > 0) return;
   const ConjugateTimes conjugate = conjugate_times(problem, extremal.knots, steps / 2);
   if (!conjugate.known) return;
   geodesic.conjugate_times = conjugate.times;

@@ -15,7 +15,7 @@ class Equations {
       : segment_(segment),
         h_(h),
         n_(segment.dof),
-        k_(segment.multipliers),
+        k_(segment.transcribed),
         intervals_(intervals),
         m_(2 * n_ + k_),
         x_(m_),

@@ -26,11 +26,33 @@ Extremal constant_path(const BoundaryValueProblem& problem) {
   return extremal;
 }
 
-std::string failure_message(const Search& search, const GeodesicOptions& options) {
+// Whether from = to needs no search: with velocity constraints the path that does not move is
+// returned; elsewhere drift or a force may forbid it.
+bool stays(const BoundaryValueProblem& problem) {
+  if (problem.from != problem.to) return false;
+  if (problem.segment.has_transcription()) return true;
+  constexpr double kMoved = 1e-12;
+  std::vector<double> z = problem.from;
+  z.resize(2 * problem.from.size(), 0.0);
+  const StepPlan plan = StepPlan::equal(0, problem.time, kFewSteps);
+  const bool completed = problem.segment.flow(plan, z.data()).completed();
+  for (std::size_t j = 0; j < problem.from.size(); ++j) {
+    if (!(std::abs(z[j] - problem.from[j]) <= kMoved * (1 + std::abs(z[j])))) return false;
+  }
+  return completed;
+}
+
+std::string failure_message(const BoundaryValueProblem& problem,
+                            const Search& search,
+                            const GeodesicOptions& options) {
   const std::string tried =
       std::to_string(search.starts()) + (search.starts() == 1 ? " start" : " starts") + " tried";
   if (!options.guess.empty()) {
     return "the guess did not lead to an extremal: leave --guess out to search from paths";
+  }
+  if (!problem.segment.has_transcription()) {
+    return "no momentum led to an extremal (" + tried +
+           "): try more --starts, another --seed, a --guess, or a target less far away";
   }
   if (!search.any_discrete()) {
     return "no path relaxed to a discrete extremal (" + tried +
@@ -69,7 +91,7 @@ GeodesicReport find_geodesics(const BoundaryValueProblem& problem, const Geodesi
   Search search(problem, options);
   std::vector<Extremal> list;
   bool finished = true;
-  if (problem.from == problem.to) {
+  if (stays(problem)) {
     list.push_back(constant_path(problem));
   } else {
     if (options.guess.empty()) {
@@ -89,7 +111,7 @@ GeodesicReport find_geodesics(const BoundaryValueProblem& problem, const Geodesi
   report.starts = search.starts();
   report.converged_starts = search.converged();
   report.status = list.empty() ? GeodesicStatus::kNotConverged : GeodesicStatus::kConverged;
-  if (list.empty()) report.message = failure_message(search, options);
+  if (list.empty()) report.message = failure_message(problem, search, options);
   if (!finished) {
     report.status = GeodesicStatus::kInterrupted;
     report.message = "interrupted";

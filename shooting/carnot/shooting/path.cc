@@ -6,7 +6,7 @@ namespace carnot {
 
 void fill_momenta(const Segment& segment, double h, Path& path) {
   const int n = segment.dof;
-  const int k = segment.multipliers;
+  const int k = segment.transcribed;
   path.p.assign(path.q.size(), 0);
   std::vector<double> x(2 * n + k);
   std::vector<double> gradient(2 * n + k);

@@ -23,11 +23,11 @@ class Interval final : public ceres::CostFunction {
  public:
   Interval(const Transcription& shared, const double* lambda) : shared_(shared), lambda_(lambda) {
     const int n = shared.segment.dof;
-    set_num_residuals(n + shared.segment.multipliers + (shared.potential ? 1 : 0));
+    set_num_residuals(n + shared.segment.transcribed + (shared.potential ? 1 : 0));
     *mutable_parameter_block_sizes() = {n, n};
     qm_.resize(n);
     v_.resize(n);
-    terms_.resize(n + shared.segment.multipliers + 1);
+    terms_.resize(n + shared.segment.transcribed + 1);
     jacobian_.resize(terms_.size() * 2 * n);
   }
 
@@ -63,7 +63,7 @@ class Interval final : public ceres::CostFunction {
       residuals[row] = weight * terms_[row];
       return weight;
     }
-    if (row < n + shared_.segment.multipliers) {
+    if (row < n + shared_.segment.transcribed) {
       const double weight = std::sqrt(shared_.h * shared_.rho);
       residuals[row] = weight * (terms_[row] - lambda_[row - n] / shared_.rho);
       return weight;
@@ -92,7 +92,7 @@ struct PathTerms {
 
 PathTerms terms_of(const Segment& segment, double h, const Path& path) {
   const int n = segment.dof;
-  const int k = segment.multipliers;
+  const int k = segment.transcribed;
   PathTerms result;
   std::vector<double> qm(n), v(n), terms(n + k + 1);
   double largest_speed = 0;
@@ -148,7 +148,7 @@ Relaxation relax(const BoundaryValueProblem& problem,
   const double spread = 1 + std::abs(state.max_potential);
   Transcription shared{
       segment, h, options.penalty * state.mass, state.max_potential + spread, state.potential};
-  path.lambda.assign(static_cast<std::size_t>(path.intervals) * segment.multipliers, 0.0);
+  path.lambda.assign(static_cast<std::size_t>(path.intervals) * segment.transcribed, 0.0);
   std::vector<double>& lambda = path.lambda;
 
   Relaxation result;
@@ -158,7 +158,7 @@ Relaxation relax(const BoundaryValueProblem& problem,
   ownership.enable_fast_removal = false;
   ceres::Problem least_squares(ownership);
   for (int i = 0; i < path.intervals; ++i) {
-    least_squares.AddResidualBlock(new Interval(shared, lambda.data() + i * segment.multipliers),
+    least_squares.AddResidualBlock(new Interval(shared, lambda.data() + i * segment.transcribed),
                                    nullptr,
                                    path.configuration(i),
                                    path.configuration(i + 1));

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "carnot/shooting/discrete_newton.h"
+#include "carnot/shooting/momentum_starts.h"
 #include "carnot/shooting/multiple_shooting.h"
 #include "carnot/shooting/starts.h"
 #include "carnot/shooting/sweep.h"
@@ -30,12 +31,14 @@ constexpr double kSameAction = 1e-9;
 bool Search::run() {
   int limit = options_.all ? kMaxStartsAll : kMaxStarts;
   if (options_.starts > 0) limit = options_.starts;
-  const int sweeps = wants_more() && options_.starts == 0 ? kSweeps : 0;
+  const bool by_paths = problem_.segment.has_transcription();
+  const int sweeps = by_paths && wants_more() && options_.starts == 0 ? kSweeps : 0;
   const auto goes_on = [&](double share) { return !options_.progress || options_.progress(share); };
   while (starts_ < limit && !settled()) {
     const double share = static_cast<double>(starts_) / limit;
     if (!goes_on(sweeps > 0 ? 0.5 * share : share)) return false;
-    relax_round(std::min(kRound, limit - starts_));
+    const int count = std::min(kRound, limit - starts_);
+    by_paths ? relax_round(count) : momentum_round(count);
   }
   for (int round = 0; round < sweeps && lacks() && !extremals_.empty(); ++round) {
     if (!goes_on(0.5 + 0.5 * round / sweeps)) return false;
@@ -102,6 +105,23 @@ void Search::relax_round(int count) {
   std::vector<Candidate> candidates(count);
   parallel_for(count, threads_, [&](int i) { candidates[i] = relax_start(starts_ + i); });
   absorb(candidates);
+}
+
+void Search::momentum_round(int count) {
+  std::vector<std::optional<Extremal>> polished(count);
+  parallel_for(count, threads_, [&](int i) {
+    const std::vector<double> p0 = momentum_start(problem_, options_.seed, starts_ + i);
+    if (p0.empty()) return;
+    const int segments = i % 2 == 0 ? kSegments : 1;
+    polished[i] = polish(knots_of(problem_, p0, segments, kFirstSteps));
+  });
+  starts_ += count;
+  for (const std::optional<Extremal>& extremal : polished) {
+    const int index = add(extremal);
+    if (index < 0) continue;
+    ++hits_[index];
+    ++converged_;
+  }
 }
 
 void Search::sweep_round(int round) {

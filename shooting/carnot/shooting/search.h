@@ -51,6 +51,8 @@ class Search {
   // often the more rivals it has; a search for more goes on to the limit.
   [[nodiscard]] bool settled() const;
   void relax_round(int count);
+  // The same from momenta, where there is no transcription.
+  void momentum_round(int count);
   // Energies from that of the shortest extremal to twice that, or to the longest one.
   void sweep_round(int round);
   // Polishes what is new among the candidates and adds it to the list.

@@ -42,6 +42,7 @@ bool ShootingEquations::evaluate(
     if (!std::isfinite(residual[row])) return false;
     for (int j = 0; jacobian != nullptr && j < size; ++j) {
       jacobian[row * size + j] = tangent[row * size + j] / scale_[row];
+      if (!std::isfinite(jacobian[row * size + j])) return false;
     }
   }
   return true;

@@ -23,7 +23,7 @@ struct Scales {
 Scales measure(const BoundaryValueProblem& problem) {
   const Segment& segment = problem.segment;
   const int n = segment.dof;
-  const int k = segment.multipliers;
+  const int k = segment.transcribed;
   std::vector<double> step(n), middle(n), unit(n), terms(n + k + 1);
   const auto length_of = [&](const std::vector<double>& v) {
     double sum = 0;

@@ -64,7 +64,7 @@ Draw draw(const BoundaryValueProblem& problem, const SweepOptions& options, int 
 Path pulled(const BoundaryValueProblem& problem, const std::vector<double>& p) {
   const Segment& segment = problem.segment;
   const int n = segment.dof;
-  const int k = segment.multipliers;
+  const int k = segment.transcribed;
   const Knots knots = knots_of(problem, p, kIntervals, kIntervals);
   Path path;
   path.intervals = kIntervals;
@@ -79,11 +79,10 @@ Path pulled(const BoundaryValueProblem& problem, const std::vector<double>& p) {
     }
   }
   std::copy(problem.to.begin(), problem.to.end(), path.configuration(kIntervals));
-  std::vector<double> middle(2 * n), velocity(n);
+  std::vector<double> middle(2 * n);
   for (int i = 0; i < kIntervals && k > 0; ++i) {
     for (int j = 0; j < 2 * n; ++j) middle[j] = 0.5 * (knots.at(i)[j] + knots.at(i + 1)[j]);
-    segment.evaluate(
-        0, middle.data(), middle.data() + n, velocity.data(), path.lambda.data() + i * k);
+    segment.midpoint_multipliers(middle.data(), middle.data() + n, path.lambda.data() + i * k);
   }
   return path;
 }

@@ -54,6 +54,7 @@ std::vector<ProblemSymmetry> symmetries_of(const BoundaryValueProblem& problem) 
   for (std::size_t i = 0; i < mirrors.size(); ++i) {
     for (const bool reverses : {false, true}) {
       if (i == 0 && !reverses) continue;
+      if (reverses && !problem.segment.has_transcription()) continue;  // drift, magnetic fields
       ProblemSymmetry symmetry{mirrors[i], 0, {}, reverses};
       if (complete_map(problem, symmetry)) result.push_back(symmetry);
     }

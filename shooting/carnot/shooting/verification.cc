@@ -60,6 +60,14 @@ long enough_steps(const BoundaryValueProblem& problem,
   return steps;
 }
 
+// Brings p0 to the hidden constraint: the part that moves nothing is taken away.
+void project(const BoundaryValueProblem& problem, std::vector<double>& p0) {
+  std::vector<double> z = problem.from;
+  z.insert(z.end(), p0.begin(), p0.end());
+  if (!problem.segment.project_on_manifold(0, z.data())) return;
+  p0.assign(z.begin() + problem.segment.dof, z.end());
+}
+
 }  // namespace
 
 std::optional<Extremal> verify(const BoundaryValueProblem& problem,
@@ -74,8 +82,10 @@ std::optional<Extremal> verify(const BoundaryValueProblem& problem,
   Eigen::MatrixXd jacobian;
   double error = std::numeric_limits<double>::infinity();
   if (correct(problem, steps, 1e-3 * tolerance, p0, jacobian) <= tolerance) {
-    extremal.singular = nullity(jacobian) > 0;
+    // Holonomic constraints: p along the rows of Dh moves nothing.
+    extremal.singular = nullity(jacobian) > problem.segment.holonomic;
     if (extremal.singular) reduce(problem, steps, tolerance, p0, jacobian);
+    if (problem.segment.holonomic > 0) project(problem, p0);
     extremal.knots = knots_of(problem, p0, 1, tighter);
     error = largest_difference(extremal.knots.at(1), problem.to.data(), problem.segment.dof);
   }
@@ -104,7 +114,7 @@ std::optional<Extremal> verify(const BoundaryValueProblem& problem,
   lambda.pop_back();
   geodesic.lambda0 = lambda;
   geodesic.action = measured.action;
-  geodesic.length = measured.length;
+  if (std::isfinite(measured.length)) geodesic.length = measured.length;
   geodesic.constraint_error = measured.constraint_error;
   geodesic.energy_drift = measured.energy_drift;
   geodesic.plan = StepPlan::equal(0, problem.time, tighter);

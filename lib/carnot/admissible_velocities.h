@@ -1,0 +1,72 @@
+// A control problem q' = F(q) u of cost u'R u/2 seen as one with velocity constraints, for the
+// midpoint transcription, which knows paths and not controls.
+//
+// With W = (F'F)^-1 F' the velocity v = F u has the controls u = W v and costs v'(W'R W)v/2, and v
+// is admissible where C v = 0, C = I - F W. C is a projector: of its n rows only n - c are
+// independent, so lambda is determined up to the range of P = F W. The term lambda'P lambda/2 of
+// the discrete Lagrangian (midpoint_transcription.h) picks P lambda = 0 and changes nothing else.
+// Where F loses rank, F'F + epsilon trace(F'F) I stands for F'F.
+#pragma once
+
+#include "carnot/cholesky.h"
+#include "carnot/linear_algebra.h"
+#include "carnot/optimal_control_scene.h"
+#include "carnot/scalar.h"
+
+namespace carnot {
+
+template <HasLinearControls Scene>
+struct AdmissibleVelocities {
+  static constexpr int kDof = Scene::kDof;
+  static constexpr int kMultipliers = kDof;
+  static constexpr int kControls = Scene::kControls;
+
+  Scene scene;
+
+  // W'R W.
+  template <class T>
+  [[nodiscard]] Matrix<T, kDof, kDof> mass(const Vector<T, kDof>& q) const {
+    const Matrix<T, kControls, kDof> w = controls(Matrix<T, kDof, kControls>(scene.frame(q)));
+    if constexpr (HasControlWeight<Scene>) {
+      const Matrix<T, kControls, kDof> rw = product(scene.control_weight(q), w);
+      return product(w.transpose(), rw);
+    } else {
+      return product(w.transpose(), w);
+    }
+  }
+
+  // C.
+  template <class T>
+  [[nodiscard]] Matrix<T, kDof, kDof> constraints(const Vector<T, kDof>& q) const {
+    Matrix<T, kDof, kDof> c = -gauge(q);
+    for (int i = 0; i < kDof; ++i) c(i, i) += constant<T>(1);
+    return c;
+  }
+
+  // P.
+  template <class T>
+  [[nodiscard]] Matrix<T, kDof, kDof> gauge(const Vector<T, kDof>& q) const {
+    const Matrix<T, kDof, kControls> f = scene.frame(q);
+    return product(f, controls(f));
+  }
+
+ private:
+  // W.
+  template <class T>
+  [[nodiscard]] Matrix<T, kControls, kDof> controls(const Matrix<T, kDof, kControls>& f) const {
+    constexpr double kRegular = 1e-14;
+    Matrix<T, kControls, kControls> square = product(f.transpose(), f);
+    T trace = square(0, 0);
+    for (int i = 1; i < kControls; ++i) trace += square(i, i);
+    for (int i = 0; i < kControls; ++i) square(i, i) += constant<T>(kRegular) * trace;
+    const Cholesky<T, kControls> factor(square);
+    Matrix<T, kControls, kDof> w;
+    for (int j = 0; j < kDof; ++j) {
+      const Vector<T, kControls> row = f.row(j).transpose();
+      w.col(j) = factor.solve(row);
+    }
+    return w;
+  }
+};
+
+}  // namespace carnot

@@ -1,0 +1,287 @@
+// Segments of a scene: the templates of the core behind the function pointers of segment.h.
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "carnot/audit.h"
+#include "carnot/gauss.h"
+#include "carnot/methods.h"
+#include "carnot/rattle.h"
+#include "carnot/rattle_tangent.h"
+#include "carnot/segment.h"
+#include "carnot/system_of.h"
+#include "carnot/tangent_flow.h"
+#include "carnot/transcription_calls.h"
+
+namespace carnot {
+
+namespace segment_calls {
+
+// What a Segment points to. A stepper is made of it for every run.
+template <class Stepper_>
+struct Bound {
+  using Stepper = Stepper_;
+  using System = typename Stepper::System;
+  static constexpr int n = System::kDof;
+  static constexpr int m = System::kAlgebraic;
+  static constexpr int k = System::kMultipliers;
+
+  System system;
+  std::decay_t<decltype(std::declval<const Stepper&>().tableau())> tableau;
+  Vector<double, m> branch = Vector<double, m>::Zero();
+
+  [[nodiscard]] Stepper stepper() const {
+    Stepper step(system, tableau);
+    step.start_on(branch);
+    return step;
+  }
+  static const Bound& from(const void* opaque) { return *static_cast<const Bound*>(opaque); }
+};
+
+template <class B>
+State<double, B::n> load(const double* z) {
+  return {view<2 * B::n>(z), Vector<double, 2 * B::n>::Zero()};
+}
+
+template <class B>
+FlowReport flow(const void* opaque, const StepPlan& plan, double* z) {
+  auto stepper = B::from(opaque).stepper();
+  auto state = load<B>(z);
+  const FlowReport report = carnot::flow(stepper, plan, state);
+  view<2 * B::n>(z) = state.value;
+  return report;
+}
+
+template <class B>
+FlowReport tangent_flow(const void* opaque, const StepPlan& plan, double* z, double* m) {
+  using Square = Matrix<double, 2 * B::n, 2 * B::n>;
+  auto stepper = B::from(opaque).stepper();
+  auto state = load<B>(z);
+  Compensated<Square> tangent{Square::Identity(), Square::Zero()};
+  const FlowReport report = carnot::tangent_flow(
+      stepper, plan, state, tangent, [](long, const auto&, const auto&) { return true; });
+  view<2 * B::n>(z) = state.value;
+  using RowMajor = Eigen::Matrix<double, 2 * B::n, 2 * B::n, Eigen::RowMajor>;
+  Eigen::Map<RowMajor> out(m);
+  out = tangent.value;
+  return report;
+}
+
+template <class B>
+FlowSummary audited_flow(const void* opaque,
+                         const StepPlan& plan,
+                         double* z,
+                         const AuditOptions& options) {
+  constexpr long kProgressEvery = 256;
+  using Stepper = typename B::Stepper;
+  const B& bound = B::from(opaque);
+  auto stepper = bound.stepper();
+  auto state = load<B>(z);
+  Audit<Stepper> audit(bound.system, plan.start, stepper, state);
+  Recorder<Stepper> recorder(
+      plan,
+      options.times.empty() ? sample_times(plan, options.samples) : options.times,
+      stepper,
+      state);
+  FlowSummary summary;
+  summary.report =
+      carnot::flow(stepper, plan, state, [&](long i, const Stepper& step, const auto& node) {
+        audit(plan.time(i + 1), step, node);
+        if (!std::isfinite(audit.energy_drift())) return false;
+        recorder(i, step, node);
+        if (!options.progress || i % kProgressEvery != 0) return true;
+        return options.progress(static_cast<double>(i) / static_cast<double>(plan.count));
+      });
+  view<2 * B::n>(z) = state.value;
+  if (!std::isfinite(audit.energy_drift())) {
+    summary.report.status = FlowStatus::kStepFailed;
+    summary.report.last.status = StepStatus::kRateFailed;
+    summary.report.last.rate = RateStatus::kNotFinite;
+  }
+  summary.action = audit.action();
+  summary.length = audit.length();
+  summary.energy_drift = audit.energy_drift();
+  summary.energy_balance = audit.energy_balance();
+  summary.constraint_error = audit.constraint_error();
+  summary.holonomic_error = audit.holonomic_error();
+  summary.trajectory = recorder.trajectory();
+  return summary;
+}
+
+template <class B>
+PointValues evaluate(const void* opaque,
+                     double t,
+                     const double* q_in,
+                     const double* p_in,
+                     double* q_dot,
+                     double* lambda_out) {
+  const B& bound = B::from(opaque);
+  const Vector<double, B::n> q = view<B::n>(q_in);
+  const Vector<double, B::n> p = view<B::n>(p_in);
+  Vector<double, B::m> y = bound.branch;
+  Vector<double, B::k> lambda = Vector<double, B::k>::Zero();
+  Rate<double, B::n> rate;
+  PointValues values;
+  values.status = bound.system.rate(t, q, p, y, rate);
+  if constexpr (HasRegularity<typename B::System>) {
+    values.regularity = bound.system.regularity(t, q, p, y);
+  }
+  if (values.status != RateStatus::kOk) return values;
+  values.status = bound.system.multipliers(t, q, p, y, lambda);
+  values.hamiltonian = bound.system.hamiltonian(t, q, p, y);
+  view<B::n>(q_dot) = rate.q_dot;
+  view<B::k>(lambda_out) = lambda;
+  return values;
+}
+
+template <class B>
+double momentum(const void* opaque,
+                double t,
+                const double* q_in,
+                double* q_dot,
+                const double* lambda_in,
+                double* p_out) {
+  const Vector<double, B::n> q = view<B::n>(q_in);
+  Vector<double, B::n> v = view<B::n>(q_dot);
+  Vector<double, B::n> p;
+  const Vector<double, B::k> lambda = view<B::k>(lambda_in);
+  const double violated = B::from(opaque).system.admissible_momentum(t, q, v, lambda, p);
+  view<B::n>(q_dot) = v;
+  view<B::n>(p_out) = p;
+  return violated;
+}
+
+// max |h(q)|, and that of Dh q' over |q'|.
+template <class B>
+HolonomicResiduals holonomic_residuals(const void* opaque, double t, const double* z) {
+  const auto& system = B::from(opaque).system;
+  const Vector<double, B::n> q = view<B::n>(z);
+  Vector<double, B::m> y = B::from(opaque).branch;
+  Vector<double, 2 * B::n> rate;
+  HolonomicResiduals residuals;
+  residuals.position = holonomic_residual(system.scene(), q);
+  if (phase_rate(system, t, Vector<double, 2 * B::n>(view<2 * B::n>(z)), y, rate) ==
+      RateStatus::kOk) {
+    const Vector<double, B::n> v = rate.template head<B::n>();
+    const double size = v.cwiseAbs().maxCoeff();
+    residuals.velocity = size > 0 ? hidden_residual(system.scene(), q, v) / size : 0;
+  }
+  return residuals;
+}
+
+template <class B>
+bool project_on_manifold(const void* opaque, double t, double* z) {
+  const auto& system = B::from(opaque).system;
+  Vector<double, B::n> q = view<B::n>(z);
+  Vector<double, B::n> p = view<B::n>(z + B::n);
+  if (!project_configuration(system.scene(), q)) return false;
+  if (project_momentum(system, t, q, p) != RateStatus::kOk) return false;
+  view<B::n>(z) = q;
+  view<B::n>(z + B::n) = p;
+  return true;
+}
+
+template <class B>
+bool tangent_projector(const void* opaque, double t, const double* z, double* projector) {
+  Matrix<double, 2 * B::n, 2 * B::n> p;
+  const Vector<double, 2 * B::n> at = view<2 * B::n>(z);
+  if (!manifold_projector(B::from(opaque).system, t, at, p)) return false;
+  view<4 * B::n * B::n>(projector) = view<4 * B::n * B::n>(p.data());
+  return true;
+}
+
+template <class B>
+std::shared_ptr<const void> branch(
+    const void* opaque, double t, const double* q, const double* p, const double* lambda) {
+  const B& bound = B::from(opaque);
+  auto other = std::make_shared<B>(bound);
+  const RateStatus status = bound.system.branch(t,
+                                                Vector<double, B::n>(view<B::n>(q)),
+                                                Vector<double, B::n>(view<B::n>(p)),
+                                                Vector<double, B::k>(view<B::k>(lambda)),
+                                                other->branch);
+  if (status != RateStatus::kOk) return nullptr;
+  return other;
+}
+
+template <class B, class Scene>
+Segment bind(const Scene& scene, const Method& method, B bound) {
+  using System = typename B::System;
+  Segment segment;
+  segment.dof = B::n;
+  segment.multipliers = B::k;
+  segment.autonomous = System::kAutonomous;
+  segment.method = method.name;
+  segment.order = method.order;
+  segment.symplectic = method.symplectic;
+  segment.info = describe_scene(scene);
+  segment.system = std::make_shared<const B>(std::move(bound));
+  segment.calls.flow = flow<B>;
+  segment.calls.tangent_flow = tangent_flow<B>;
+  segment.calls.audited_flow = audited_flow<B>;
+  segment.calls.evaluate = evaluate<B>;
+  segment.calls.momentum = momentum<B>;
+  if constexpr (HasBranches<System>) segment.calls.branch = branch<B>;
+  if constexpr (HasHolonomic<Scene>) {
+    segment.holonomic = Scene::kHolonomic;
+    segment.calls.holonomic_residuals = holonomic_residuals<B>;
+    segment.calls.project_on_manifold = project_on_manifold<B>;
+    segment.calls.tangent_projector = tangent_projector<B>;
+  } else if constexpr (IsTranscribed<System>::value) {
+    segment.transcribed = kTranscribed<B>;
+    segment.calls.midpoint = midpoint<B>;
+    segment.calls.midpoint_multipliers = midpoint_multipliers<B>;
+    segment.calls.discrete_lagrangian = discrete_lagrangian<B>;
+  }
+  return segment;
+}
+
+}  // namespace segment_calls
+
+// Whether `method` can integrate the scene: holonomic constraints need RATTLE.
+template <class Scene>
+bool suits(const Method& method) {
+  return !HasHolonomic<Scene> || method.family == kRattleFamily;
+}
+
+// gauss16, or rattle where there are holonomic constraints.
+template <class Scene>
+constexpr std::string_view default_method() {
+  return HasHolonomic<Scene> ? "rattle" : "gauss16";
+}
+
+// A Segment of the scene with a method of methods.h. Throws std::invalid_argument when a parameter
+// of the scene is out of its range, or there is no such method for it.
+template <class Scene>
+Segment make_segment(const Scene& scene, std::string_view method_name = default_method<Scene>()) {
+  using namespace segment_calls;
+  validate(scene);
+  const Method* const method = find_method(method_name);
+  if (method == nullptr || !suits<Scene>(*method)) {
+    throw std::invalid_argument("method " + std::string(method_name) +
+                                (method == nullptr ? ": there is none of that name"
+                                                   : ": the holonomic constraints of this scene "
+                                                     "need rattle, rattle4 or rattle6"));
+  }
+  const Tableau<double> tableau = make_tableau(*method);
+  auto system = make_system(scene);
+  using System = decltype(system);
+  if constexpr (HasHolonomic<Scene>) {
+    return bind(scene, *method, Bound<Rattle<System>>{std::move(system), tableau});
+  } else {
+    // The default method with all that the compiler can do for it; one kernel for the others.
+    constexpr int kFixed = 8;
+    if (tableau.coupling == Coupling::kFull && !tableau.partitioned && tableau.stages() == kFixed) {
+      using Stepper = RungeKutta<System, kFixed>;
+      return bind(scene, *method, Bound<Stepper>{std::move(system), fixed_stages<kFixed>(tableau)});
+    }
+    return bind(scene, *method, Bound<RungeKutta<System>>{std::move(system), tableau});
+  }
+}
+
+}  // namespace carnot
