@@ -1,4 +1,6 @@
 // carnot flow: an initial value problem, advanced and measured.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -19,6 +21,7 @@ Exactly one of --momentum and --velocity, exactly one of --step, --steps and --t
 p = dL/dq' - G' lambda. --velocity must satisfy the constraints to 1e-9 relative; it is then
 projected, and p follows with lambda = 0 or that of --lambda. Angles are radians; pi/2 and -3*pi/4
 are numbers. Units are the scene's own: see `carnot scenes SCENE`.
+Where constraints are not linear in q', one p can have several lambda: --lambda picks the branch.
 --tolerance runs trials until N and 2N steps agree; "evaluations" counts the final run only.
 "symplecticity_defect_relative" divides by max(1, |M|^2) with the Frobenius norm of M.
 
@@ -30,17 +33,27 @@ Examples
 Exit status: 0 completed, 1 a step failed or the tolerance is out of reach, 2 bad input,
 130 interrupted.)";
 
-// Why a flow cannot start at z; empty when it can.
-std::string start_failure(const FlowRequest& request) {
-  const Segment& segment = request.run.segment;
+// " (det H_yy = ...)" at (t, z), where H_y = 0 is solved by Newton's method; else nothing.
+std::string regularity_text(const PointValues& at) {
+  if (!at.regularity) return "";
+  return fmt::format(" (det H_yy = {:.3g}, condition {:.3g})",
+                     at.regularity->determinant,
+                     at.regularity->condition);
+}
+
+PointValues values_at(const Segment& segment, double t, const std::vector<double>& z) {
   std::vector<double> q_dot(segment.dof);
   std::vector<double> lambda(segment.multipliers);
-  const double* q = request.z.data();
-  const double* p = q + segment.dof;
-  const PointValues values =
-      segment.evaluate(request.start_time, q, p, q_dot.data(), lambda.data());
-  if (values.status != RateStatus::kOk) return std::string(describe(values.status));
-  return std::isfinite(values.hamiltonian) ? "" : "the Hamiltonian is not finite at the start";
+  return segment.evaluate(t, z.data(), z.data() + segment.dof, q_dot.data(), lambda.data());
+}
+
+// Why a flow cannot start at z; empty when it can.
+std::string start_failure(const FlowRequest& request) {
+  const PointValues at = values_at(request.run.segment, request.start_time, request.z);
+  if (at.status != RateStatus::kOk) {
+    return std::string(describe(at.status)) + regularity_text(at);
+  }
+  return std::isfinite(at.hamiltonian) ? "" : "the Hamiltonian is not finite at the start";
 }
 
 // Fills request.plan's place in the outcome; false when there are no steps for the tolerance.
@@ -84,6 +97,10 @@ FlowOutcome run_flow(const FlowRequest& request) {
     audit.progress = bar.callback();
     outcome.summary = request.run.segment.audited_flow(outcome.plan, outcome.z.data(), audit);
     outcome.message = outcome.summary.report.reason();
+    if (!outcome.completed()) {
+      const double reached = outcome.summary.report.time_reached;
+      outcome.message += regularity_text(values_at(request.run.segment, reached, outcome.z));
+    }
     const bool finite =
         std::all_of(outcome.z.begin(), outcome.z.end(), [](double x) { return std::isfinite(x); });
     if (outcome.completed() && !finite) outcome.message = "the end point is not finite";
@@ -104,7 +121,10 @@ void add_flow(CLI::App& app, Invocation& invocation) {
   add("--from", options->from, "Q0", "configuration at the start, e.g. -3,4,-pi/2,0");
   add("--momentum", options->momentum, "P0", "momentum at the start");
   add("--velocity", options->velocity, "V0", "velocity at the start, instead of --momentum");
-  add("--lambda", options->lambda, "L0", "multipliers that go with --velocity (0)");
+  add("--lambda",
+      options->lambda,
+      "L0",
+      "multipliers that go with --velocity (0), or that pick the branch");
   add("--time", options->time, "T", "how long, > 0");
   add("--step", options->step, "H", "length of a step; the last one may be shorter");
   add("--steps", options->steps, "N", "number of equal steps");

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "holonomic_check.h"
 #include "numbers.h"
 #include "scene_choice.h"
 
@@ -15,26 +16,30 @@ namespace {
 constexpr long kMostSteps = 1000000000000;
 constexpr double kVelocityTolerance = 1e-9;
 
-// p of a velocity that satisfies the constraints at q.
+// p of a velocity that satisfies the constraints at (t, q).
 std::vector<double> momentum_of(const Segment& segment,
+                                double t,
                                 const std::vector<double>& q,
                                 std::vector<double> velocity,
                                 const std::vector<double>& lambda,
                                 const std::string& text) {
   const auto larger = [](double a, double b) { return std::abs(a) < std::abs(b); };
   const double size = std::abs(*std::max_element(velocity.begin(), velocity.end(), larger));
-  std::vector<double> unit = velocity;  // its squares neither overflow nor vanish
-  for (double& v : unit) v = size > 0 ? v / size : 0;
+  std::vector<double> trial = velocity;
+  // Where constraints are linear in q', squares of a unit vector neither overflow nor vanish.
+  if (segment.has_transcription() && size > 0) {
+    for (double& v : trial) v /= size;
+  }
   std::vector<double> p(q.size());
-  const double residual = segment.momentum(q.data(), unit.data(), lambda.data(), p.data());
+  const double residual = segment.momentum(t, q.data(), trial.data(), lambda.data(), p.data());
   if (!(residual <= kVelocityTolerance)) {
     refuse(
         "--velocity",
         text,
-        fmt::format("it violates the constraints at --from, residual |G v|/|v| = {:.3g}", residual),
+        fmt::format("it violates the constraints at --from, residual |g|/|v| = {:.3g}", residual),
         fmt::format("a velocity with residual <= {:g}", kVelocityTolerance));
   }
-  segment.momentum(q.data(), velocity.data(), lambda.data(), p.data());
+  segment.momentum(t, q.data(), velocity.data(), lambda.data(), p.data());
   if (!std::all_of(p.begin(), p.end(), [](double x) { return std::isfinite(x); })) {
     refuse("--velocity",
            text,
@@ -44,28 +49,66 @@ std::vector<double> momentum_of(const Segment& segment,
   return p;
 }
 
-std::vector<double> parse_momentum(const FlowOptions& options,
-                                   const SceneEntry& entry,
-                                   const Segment& segment,
-                                   const std::vector<double>& q) {
-  const auto names = coordinate_names(entry);
+std::vector<double> parse_lambda(const FlowOptions& options, const Segment& segment) {
+  if (options.lambda.empty()) return std::vector<double>(segment.multipliers, 0.0);
+  if (segment.multipliers == 0) {
+    refuse("--lambda", options.lambda, "the scene has no multipliers", "no --lambda");
+  }
+  return parse_vector("--lambda", options.lambda, numbered_names("lambda_", segment.multipliers));
+}
+
+std::vector<double> parse_momentum(const FlowOptions& options, const FlowRequest& request) {
+  const Segment& segment = request.run.segment;
+  const auto names = coordinate_names(*request.run.entry);
   if (!options.momentum.empty() && !options.velocity.empty()) {
     refuse("--velocity", options.velocity, "given besides --momentum", "one of the two");
   }
-  if (!options.lambda.empty() && options.velocity.empty()) {
-    refuse("--lambda", options.lambda, "given without --velocity", "--lambda with --velocity only");
+  if (!options.lambda.empty() && options.velocity.empty() && !segment.has_branches()) {
+    refuse("--lambda",
+           options.lambda,
+           "given without --velocity, and every p has one lambda in this scene",
+           "--lambda with --velocity only");
   }
   if (!options.momentum.empty()) return parse_vector("--momentum", options.momentum, names);
   if (options.velocity.empty()) {
     refuse_missing("--momentum", "--momentum P0 or --velocity V0, " + vector_accepted(names));
   }
-  std::vector<double> lambda(segment.multipliers, 0.0);
-  if (!options.lambda.empty()) {
-    lambda =
-        parse_vector("--lambda", options.lambda, numbered_names("lambda_", segment.multipliers));
-  }
+  const auto lambda = parse_lambda(options, segment);
   const auto velocity = parse_vector("--velocity", options.velocity, names);
-  return momentum_of(segment, q, velocity, lambda, options.velocity);
+  return momentum_of(segment, request.start_time, request.z, velocity, lambda, options.velocity);
+}
+
+// The branch of H_y = 0 through the multipliers given.
+void choose_branch(const FlowOptions& options, FlowRequest& request) {
+  Segment& segment = request.run.segment;
+  if (!segment.has_branches()) return;
+  if (options.lambda.empty() && options.velocity.empty()) return;
+  const auto lambda = parse_lambda(options, segment);
+  const double* q = request.z.data();
+  auto chosen = segment.on_branch(request.start_time, q, q + segment.dof, lambda.data());
+  if (!chosen) {
+    refuse("--lambda", options.lambda, "no solution of H_y = 0 is near it", "another --lambda");
+  }
+  segment = std::move(*chosen);
+}
+
+// Holonomic constraints: z is on their manifold but for round-off, and then exactly.
+void check_manifold(const FlowOptions& options, FlowRequest& request) {
+  const Segment& segment = request.run.segment;
+  if (segment.holonomic == 0) return;
+  const auto residuals = segment.holonomic_residuals(request.start_time, request.z.data());
+  check_holonomic("--from", options.from, residuals.position);
+  const bool by_momentum = !options.momentum.empty();
+  if (!(residuals.velocity <= kVelocityTolerance)) {
+    refuse(by_momentum ? "--momentum" : "--velocity",
+           by_momentum ? options.momentum : options.velocity,
+           fmt::format("q' leaves the holonomic constraints, residual |Dh q'|/|q'| = {:.3g}",
+                       residuals.velocity),
+           fmt::format("a residual <= {:g}", kVelocityTolerance));
+  }
+  if (!segment.project_on_manifold(request.start_time, request.z.data())) {
+    refuse("--from", options.from, "the holonomic constraints are dependent", "another --from");
+  }
 }
 
 void parse_steps(const FlowOptions& options, FlowRequest& request) {
@@ -103,11 +146,13 @@ FlowRequest check(const FlowOptions& options) {
   const auto names = coordinate_names(entry);
   if (options.from.empty()) refuse_missing("--from", vector_accepted(names));
   request.z = parse_vector("--from", options.from, names);
-  const auto p = parse_momentum(options, entry, request.run.segment, request.z);
+  request.start_time = parse_real("--start-time", options.start_time);
+  const auto p = parse_momentum(options, request);
   request.z.insert(request.z.end(), p.begin(), p.end());
+  check_manifold(options, request);
+  choose_branch(options, request);
   if (options.time.empty()) refuse_missing("--time", "a finite number > 0");
   request.time = parse_positive("--time", options.time);
-  request.start_time = parse_real("--start-time", options.start_time);
   if (!std::isfinite(request.start_time + request.time)) {
     refuse("--time", options.time, "it ends at infinity", "--start-time + --time finite");
   }

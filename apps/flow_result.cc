@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <optional>
 
 #include "carnot/plots/figure.h"
 #include "csv_text.h"
@@ -26,6 +28,12 @@ EndPoint end_point(const FlowRequest& request, const FlowOutcome& outcome) {
   end.q.assign(outcome.z.begin(), outcome.z.begin() + segment.dof);
   end.p.assign(outcome.z.begin() + segment.dof, outcome.z.end());
   end.lambda.assign(segment.multipliers, std::numeric_limits<double>::quiet_NaN());
+  const Trajectory& trajectory = outcome.summary.trajectory;
+  if (outcome.completed() && !trajectory.t.empty()) {
+    end.lambda = trajectory.lambda.back();  // on the branch of the flow
+    end.hamiltonian = trajectory.hamiltonian.back();
+    return end;
+  }
   std::vector<double> q_dot(segment.dof);
   end.hamiltonian = segment
                         .evaluate(outcome.summary.report.time_reached,
@@ -79,7 +87,12 @@ Json flow_json(const FlowRequest& request,
   json["lambda"] = end.lambda;
   json["hamiltonian"] = end.hamiltonian;
   json["energy_drift"] = outcome.summary.energy_drift;
+  if (!run.segment.autonomous) {
+    json["hamiltonian_conserved"] = false;
+    json["energy_balance_error"] = outcome.summary.energy_balance;
+  }
   json["constraint_error"] = outcome.summary.constraint_error;
+  if (run.segment.holonomic > 0) json["holonomic_error"] = outcome.summary.holonomic_error;
   json["evaluations"] = outcome.summary.report.evaluations;
   json["elapsed_seconds"] = outcome.elapsed_seconds;
   if (!run.no_trajectory) json["trajectory"] = trajectory_json(outcome.summary.trajectory);
@@ -105,7 +118,6 @@ std::string flow_text(const FlowRequest& request, const FlowOutcome& outcome) {
   std::vector<std::vector<std::string>> rows{
       {"q", text_vector(end.q, kDigits)},
       {"p", text_vector(end.p, kDigits)},
-      {"lambda", text_vector(end.lambda, kDigits)},
       {"hamiltonian", text_number(end.hamiltonian, kDigits)},
       {"energy drift", text_number(outcome.summary.energy_drift, 3)},
       {"constraint error", text_number(outcome.summary.constraint_error, 3)},
@@ -113,6 +125,16 @@ std::string flow_text(const FlowRequest& request, const FlowOutcome& outcome) {
       {"step", text_number(outcome.plan.step)},
       {"evaluations", std::to_string(report.evaluations)},
       {"seconds", text_number(outcome.elapsed_seconds, 3)}};
+  if (!end.lambda.empty()) {
+    rows.insert(rows.begin() + 2, {"lambda", text_vector(end.lambda, kDigits)});
+  }
+  if (!run.segment.autonomous) {
+    rows.push_back({"H depends on time: |H - H0 - integral of H_t|",
+                    text_number(outcome.summary.energy_balance, 3)});
+  }
+  if (run.segment.holonomic > 0) {
+    rows.push_back({"holonomic error", text_number(outcome.summary.holonomic_error, 3)});
+  }
   if (outcome.tangent) {
     rows.push_back({"symplecticity defect", text_number(outcome.tangent->defect, 3)});
     rows.push_back({"  relative", text_number(outcome.tangent->relative_defect, 3)});
@@ -140,14 +162,15 @@ std::string draw(const std::string& file, const FlowRequest& request, const Step
       std::max(request.run.samples, std::min(kMostPoints, kPointsPerStep * plan.count + 1));
   std::vector<double> z = request.z;
   const FlowSummary fine = segment.audited_flow(plan, z.data(), audit);
-  return plots::write_figure(file,
-                             segment.info,
-                             {{"flow",
-                               &fine.trajectory,
-                               fine.action,
-                               fine.length,
-                               extremes(segment.info, fine.trajectory)}},
-                             figure_of(request.run.destination, segment.info));
+  return plots::write_figure(
+      file,
+      segment.info,
+      {{"flow",
+        &fine.trajectory,
+        fine.action,
+        std::isfinite(fine.length) ? std::optional(fine.length) : std::nullopt,
+        extremes(segment.info, fine.trajectory)}},
+      figure_of(request.run.destination, segment.info));
 }
 
 }  // namespace

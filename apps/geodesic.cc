@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "geodesic_result.h"
+#include "holonomic_check.h"
 #include "nearest.h"
 #include "numbers.h"
 #include "progress_bar.h"
@@ -84,6 +85,17 @@ GeodesicOptions check_search(const Options& options, const Run& run) {
   return search;
 }
 
+// Holonomic constraints hold at both ends.
+void check_ends(const Options& options, const GeodesicRequest& request) {
+  const Segment& segment = request.run.segment;
+  if (segment.holonomic == 0) return;
+  std::vector<double> z(2 * segment.dof, 0.0);
+  std::copy(request.from.begin(), request.from.end(), z.begin());
+  check_holonomic("--from", options.from, segment.holonomic_residuals(0, z.data()).position);
+  std::copy(request.to.begin(), request.to.end(), z.begin());
+  check_holonomic("--to", options.to, segment.holonomic_residuals(0, z.data()).position);
+}
+
 GeodesicRequest check(const Options& options) {
   if (options.mod_angles) {
     refuse("--mod-angles", "", "not available yet", "no --mod-angles: angles live on the cover");
@@ -95,6 +107,7 @@ GeodesicRequest check(const Options& options) {
   if (options.to.empty()) refuse_missing("--to", vector_accepted(names));
   request.from = parse_vector("--from", options.from, names);
   request.to = parse_vector("--to", options.to, names);
+  check_ends(options, request);
   request.time = parse_positive("--time", options.time);
   request.options = check_search(options, request.run);
   return request;
@@ -129,6 +142,7 @@ void add_search_options(CLI::App& app, Options& options) {
 
 void add_geodesic(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<Options>();
+  options->run.holonomic_default = "rattle6";  // for the accuracy that verification asks for
   CLI::App& geodesic =
       *app.add_subcommand("geodesic", "Find geodesics between two configurations.");
   add_search_options(geodesic, *options);

@@ -1,36 +1,31 @@
 #include "method_table.h"
 
+#include <fmt/format.h>
+
 #include "nearest.h"
 #include "numbers.h"
 
 namespace carnot::apps {
-namespace {
 
-std::vector<MethodEntry> make_table() {
-  constexpr int kMostStages = 8;
-  std::vector<MethodEntry> table;
-  for (int s = 1; s <= kMostStages; ++s) {
-    table.push_back({s == 1 ? "midpoint" : "gauss" + std::to_string(2 * s), 2 * s, s});
-  }
-  return table;
-}
-
-}  // namespace
-
-const std::vector<MethodEntry>& method_table() {
-  static const std::vector<MethodEntry> table = make_table();
-  return table;
-}
-
-const MethodEntry& find_method(std::string_view option, std::string_view name) {
+std::vector<std::string> method_names(const SceneEntry& entry) {
   std::vector<std::string> names;
-  std::string list;
-  for (const MethodEntry& method : method_table()) {
-    if (method.name == name || (method.order == 2 && name == "gauss2")) return method;
-    names.push_back(method.name);
-    list += (list.empty() ? "" : ", ") + method.name;
+  for (const Method& method : methods()) {
+    if (entry.suits(method)) names.push_back(method.name);
   }
-  refuse(option, name, "no such method" + suggestion(name, names), list);
+  return names;
+}
+
+const Method& choose_method(std::string_view name,
+                            std::string_view holonomic_default,
+                            const SceneEntry& entry) {
+  if (name.empty()) name = entry.holonomic > 0 ? holonomic_default : "gauss16";
+  const Method* const method = find_method(name);
+  if (method != nullptr && entry.suits(*method)) return *method;
+  const std::vector<std::string> names = method_names(entry);
+  const std::string why =
+      method == nullptr ? "no such method" + suggestion(name, names)
+                        : entry.info.name + " has holonomic constraints, which it does not keep";
+  refuse("--method", name, why, fmt::format("{}", fmt::join(names, ", ")));
 }
 
 }  // namespace carnot::apps

@@ -1,21 +1,22 @@
-// The methods by name. gaussN is the Gauss method of ORDER N, which has N/2 stages.
+// The method that --method names, for one scene.
 #pragma once
 
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "carnot/methods.h"
+#include "scene_entry.h"
+
 namespace carnot::apps {
 
-struct MethodEntry {
-  std::string name;
-  int order = 0;
-  int stages = 0;
-};
+// The names of the methods that can integrate the scene.
+std::vector<std::string> method_names(const SceneEntry& entry);
 
-const std::vector<MethodEntry>& method_table();
-
-// Throws std::invalid_argument naming the methods. `gauss2` is another name of the midpoint rule.
-const MethodEntry& find_method(std::string_view option, std::string_view name);
+// `name`, or where it is empty gauss16, with holonomic constraints `holonomic_default`. Throws
+// std::invalid_argument naming the methods that suit the scene.
+const Method& choose_method(std::string_view name,
+                            std::string_view holonomic_default,
+                            const SceneEntry& entry);
 
 }  // namespace carnot::apps

@@ -49,7 +49,8 @@ void add_run_options(CLI::App& app, RunOptions& options) {
   app.add_option("--set", options.set, "set a parameter of the scene (repeatable)")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
-  app.add_option("--method", options.method, "a name from `carnot methods` (default gauss16)")
+  app.add_option(
+         "--method", options.method, "a name from `carnot methods` (gauss16; rattle with h(q) = 0)")
       ->type_name("NAME");
   app.add_option("--samples", options.samples, "times in a trajectory, both ends included (201)")
       ->type_name("N");
@@ -83,7 +84,7 @@ Run check(const RunOptions& options) {
   Run run;
   run.entry = &find_scene(options.scene);
   run.parameters = parse_parameters(*run.entry, options.set);
-  run.method = find_method("--method", options.method);
+  run.method = choose_method(options.method, options.holonomic_default, *run.entry);
   run.samples = parse_integer("--samples", options.samples, 2, kMostSamples);
   run.seed = parse_seed("--seed", options.seed);
   if (!options.threads.empty()) {
@@ -93,7 +94,7 @@ Run check(const RunOptions& options) {
   run.destination = options.destination;
   run.destination.figure = find_figure(options.destination.figure_name);
   check_destination(run.destination, run.no_trajectory);
-  run.segment = run.entry->make(run.parameters, run.method.stages);
+  run.segment = run.entry->make(run.parameters, run.method.name);
   const bool drawable = run.segment.info.drawing.view != Drawing::View::kTimeOnly;
   const plots::Figure figure = run.destination.figure;
   if (!drawable && (figure == plots::Figure::kPath || figure == plots::Figure::kOverview)) {

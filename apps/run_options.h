@@ -29,7 +29,8 @@ struct Destination {
 struct RunOptions {
   std::string scene;
   std::vector<std::string> set;
-  std::string method = "gauss16";
+  std::string method;                        // empty: the default of the scene,
+  std::string holonomic_default = "rattle";  // which is this one with holonomic constraints
   std::string samples = "201";
   std::string seed = "0";
   std::string threads;  // empty: all cores
@@ -39,7 +40,7 @@ struct RunOptions {
 
 struct Run {
   const SceneEntry* entry = nullptr;
-  MethodEntry method;
+  Method method;
   ParameterValues parameters;
   Segment segment;
   long samples = 0;

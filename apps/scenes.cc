@@ -1,7 +1,10 @@
 // carnot scenes: what can be computed, and with which parameters.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
 #include <memory>
+#include <sstream>
 
 #include "delivery.h"
 #include "scene_choice.h"
@@ -47,24 +50,32 @@ Json scene_json(const SceneEntry& entry) {
           {"reference", entry.info.reference}};
 }
 
-std::string parameter_list(const SceneEntry& entry) {
-  std::string list;
-  for (const ParameterInfo& parameter : entry.parameters) {
-    list +=
-        fmt::format("{}{}={:g}", list.empty() ? "" : " ", parameter.name, parameter.default_value);
-  }
-  return list.empty() ? "-" : list;
-}
-
+// One table, its lines under headings: the kinds, in the order of the registry.
 std::string overview() {
-  std::vector<std::vector<std::string>> rows{{"scene", "configuration", "parameters", "summary"}};
+  std::vector<const SceneEntry*> entries;
+  std::vector<std::string> kinds;
   for (const SceneEntry& entry : scene_registry()) {
-    rows.push_back({entry.info.name,
-                    fmt::format("{}", fmt::join(coordinate_names(entry), ", ")),
-                    parameter_list(entry),
-                    entry.info.summary});
+    entries.push_back(&entry);
+    if (std::find(kinds.begin(), kinds.end(), entry.info.kind) == kinds.end()) {
+      kinds.push_back(entry.info.kind);
+    }
   }
-  return text_table(rows);
+  std::vector<std::vector<std::string>> rows;
+  for (const SceneEntry* entry : entries) {
+    rows.push_back({"  " + entry->info.name,
+                    fmt::format("{}", fmt::join(coordinate_names(*entry), ", ")),
+                    entry->info.summary});
+  }
+  std::istringstream table(text_table(rows));
+  std::map<std::string, std::string> lines;
+  std::string line;
+  for (const SceneEntry* entry : entries) {
+    std::getline(table, line);
+    lines[entry->info.kind] += line + '\n';
+  }
+  std::string text;
+  for (const std::string& kind : kinds) text += kind + '\n' + lines[kind];
+  return text;
 }
 
 std::string details(const SceneEntry& entry) {

@@ -29,6 +29,7 @@ TangentMap tangent_along(const Segment& segment,
                          const Progress& progress) {
   constexpr long kPiece = 4096;  // steps between two calls of `progress`
   const int n = segment.dof;
+  const std::vector<double> start = z;
   TangentMap map;
   Square m = Square::Identity(2 * n, 2 * n);
   for (long first = 0; first < plan.count && map.status == FlowStatus::kCompleted;) {
@@ -42,7 +43,15 @@ TangentMap tangent_along(const Segment& segment,
   }
   const Square j = structure_matrix(n);
   map.m.assign(m.data(), m.data() + m.size());
-  map.defect = (m.transpose() * j * m - j).cwiseAbs().maxCoeff();
+  Square defect = m.transpose() * j * m - j;
+  if (segment.holonomic > 0) {
+    Square projector(2 * n, 2 * n);
+    if (!segment.tangent_projector(plan.start, start.data(), projector.data())) {
+      map.status = FlowStatus::kStepFailed;
+    }
+    defect = projector.transpose() * defect * projector;
+  }
+  map.defect = defect.cwiseAbs().maxCoeff();
   map.relative_defect = map.defect / std::max(1.0, m.squaredNorm());
   return map;
 }

@@ -148,7 +148,7 @@ const std::vector<BadInput> kRun =
                {"--set alpha=1 --set alpha=2", "--set 'alpha=2'"},
                {"--set", "--set ''"},
                {"--method foo", "--method 'foo'"},
-               {"--method rattle", "midpoint, gauss4"},
+               {"--method gauss26", "midpoint, gauss4"},
                {"--method gauss3", "--method 'gauss3'"},
                {"--method guass16", "did you mean gauss16?"},
                {"--samples 1", "--samples '1'"},
