@@ -74,6 +74,9 @@ void draw_legend(Script& script,
                  double x,
                  const std::vector<LegendEntry>& entries) {
   constexpr double kMiddle = 20;
+  constexpr double kHalfEntry = 95;  // about half the width of an entry
+  const double half = kHalfEntry * static_cast<double>(entries.size());
+  if (2 * half < page.width) x = std::clamp(x, half, page.width - half);
   clear_settings(script);
   script << "unset tics\nunset border\nset xrange [0:1]\nset yrange [0:1]\n";
   set_box(script, page, {0, 0, page.width, page.height});  // room for a single row
