@@ -94,6 +94,8 @@ void build(CLI::App& app, Invocation& invocation) {
   add_flow(app, invocation);
   add_scenes(app, invocation);
   add_methods(app, invocation);
+  add_verify(app, invocation);
+  add_paper(app, invocation);
   app.require_subcommand(0, 1);
 }
 

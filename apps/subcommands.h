@@ -19,5 +19,7 @@ void add_geodesic(CLI::App& app, Invocation& invocation);
 void add_flow(CLI::App& app, Invocation& invocation);
 void add_scenes(CLI::App& app, Invocation& invocation);
 void add_methods(CLI::App& app, Invocation& invocation);
+void add_verify(CLI::App& app, Invocation& invocation);
+void add_paper(CLI::App& app, Invocation& invocation);
 
 }  // namespace carnot::apps

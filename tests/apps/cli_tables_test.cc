@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 TEST(Help, IsThereForEverySubcommand) {
   EXPECT_THAT(run({"--help"}).out, AllOf(HasSubstr("geodesic"), HasSubstr("Exit status")));
   EXPECT_EQ(run({"-h"}).out, run({"--help"}).out);
-  for (const char* name : {"geodesic", "flow", "scenes", "methods"}) {
+  for (const char* name : {"geodesic", "flow", "scenes", "methods", "verify"}) {
     const Outcome outcome = run({name, "--help"});
     EXPECT_EQ(outcome.status, 0) << name;
     EXPECT_EQ(outcome.err, "");
@@ -72,11 +72,51 @@ TEST(ScenesCommand, DescribesOneScene) {
   EXPECT_THAT(run({"scenes", "vehicle"}).out, AllOf(HasSubstr("alpha"), HasSubstr(">= 0")));
 }
 
-TEST(MethodsCommand, NumbersTheOrder) {
+TEST(MethodsCommand, DeclaresAndMeasures) {
   const auto json = run({"methods", "--json"}).json();
-  EXPECT_EQ(json["methods"].size(), 8);
-  EXPECT_EQ(json["methods"][0].dump(), R"({"name":"midpoint","order":2,"stages":1})");
-  EXPECT_EQ(json["methods"][7].dump(), R"({"name":"gauss16","order":16,"stages":8})");
+  ASSERT_EQ(json["methods"].size(), 26);
+  std::set<std::string> names;
+  for (const auto& method : json["methods"]) {
+    EXPECT_THAT(keys(method),
+                ElementsAre("name",
+                            "order",
+                            "stages",
+                            "family",
+                            "symplectic",
+                            "symmetric",
+                            "scene",
+                            "measured_order",
+                            "order_verdict",
+                            "symplecticity_defect",
+                            "reversibility_defect",
+                            "summary"));
+    SCOPED_TRACE(method["name"]);
+    names.insert(method["name"].get<std::string>());
+    EXPECT_EQ(method["symplecticity_defect"].get<double>() < 1e-14,
+              method["symplectic"].get<bool>());
+    EXPECT_EQ(method["reversibility_defect"].get<double>() < 1e-14,
+              method["symmetric"].get<bool>());
+    EXPECT_NE(method["order_verdict"], "fails");
+    const auto order = method["order"].get<double>();
+    if (order <= 6) {
+      EXPECT_NEAR(method["measured_order"].get<double>(), order, 0.06 * order);
+    }
+  }
+  EXPECT_EQ(names.size(), json["methods"].size());
+  for (const char* name : {"midpoint", "gauss16", "midpoint8", "lobatto8", "radau5", "rattle6"}) {
+    EXPECT_EQ(names.count(name), 1) << name;
+  }
+  const auto& first = json["methods"][0];
+  EXPECT_EQ(first["name"], "midpoint");
+  EXPECT_EQ(first["order"], 2);
+  EXPECT_EQ(first["stages"], 1);
+}
+
+TEST(MethodsCommand, MarksWhatIsBroken) {
+  const std::string text = run({"methods"}).out;
+  const std::string radau = text.substr(text.find("\nradau5") + 1);
+  EXPECT_THAT(radau.substr(0, radau.find('\n')), AllOf(HasSubstr("*"), HasSubstr("Radau IIA")));
+  EXPECT_EQ(text.substr(0, text.find("\ngauss6")).find('*'), std::string::npos);
 }
 
 TEST(Tables, GoToAFile) {
