@@ -1,12 +1,14 @@
-// Laws of a symplectic, reversible method, told a run as a plain function: so the laws are compiled
-// once per number of unknowns, and each method once per scene.
+// Laws of a symplectic, reversible method, told a run as a function: so the laws are compiled once
+// per number of unknowns, and the kernel of all methods once per scene.
 #pragma once
 
 #include <gtest/gtest.h>
 
-#include <limits>
+#include <functional>
 #include <string>
+#include <vector>
 
+#include "carnot/methods.h"
 #include "carnot/tangent_flow.h"
 #include "testing/runs.h"
 
@@ -23,19 +25,19 @@ TangentState<n> identity_tangent() {
 
 // Advances z, and m with it, by equal steps over `duration`.
 template <int n>
-using Run = FlowReport (*)(double duration, long steps, State<double, n>& z, TangentState<n>& m);
+using Run =
+    std::function<FlowReport(double duration, long steps, State<double, n>& z, TangentState<n>& m)>;
 
-// The run of the Gauss method of s stages on the scene with uneven parameters.
-template <class Scene, int s>
-[[gnu::noinline]] FlowReport gauss_run(double duration,
-                                       long steps,
-                                       State<double, Scene::kDof>& z,
-                                       TangentState<Scene::kDof>& m) {
-  using System = VelocityConstraints<Scene>;
-  const System system(uneven<Scene>());
-  Gauss<System, s> method(system);
-  const auto go_on = [](long, const auto&, const auto&) { return true; };
-  return tangent_flow(method, StepPlan::equal(0, duration, steps), z, m, go_on);
+// The run of a method on the scene with uneven parameters.
+template <class Scene>
+Run<Scene::kDof> method_run(const Tableau<double>& tableau) {
+  return [tableau](double duration, long steps, auto& z, auto& m) {
+    using System = VelocityConstraints<Scene>;
+    const System system(uneven<Scene>());
+    RungeKutta<System> method(system, tableau);
+    const auto go_on = [](long, const auto&, const auto&) { return true; };
+    return tangent_flow(method, StepPlan::equal(0, duration, steps), z, m, go_on);
+  };
 }
 
 // max-norm of M'JM - J over max(1, |M|^2).
@@ -46,7 +48,7 @@ double relative_symplecticity_defect(const Matrix<double, size, size>& m) {
 }
 
 template <int n>
-void expect_symplectic(Run<n> run, double h, long steps) {
+void expect_symplectic(const Run<n>& run, double h, long steps) {
   constexpr double kDefect = 1e-14;  // about 50 eps: round-off of the products, per |M|^2
   Generator generator(1);
   for (int sample = 0; sample < 3; ++sample) {
@@ -60,7 +62,7 @@ void expect_symplectic(Run<n> run, double h, long steps) {
 
 // M against central differences of fourth order of the flow itself.
 template <int n>
-void expect_tangent_of_the_map(Run<n> run, double h, long steps) {
+void expect_tangent_of_the_map(const Run<n>& run, double h, long steps) {
   constexpr double kStep = 1e-3;
   // Truncation kStep^4 and round-off eps / kStep are below 1e-12, times high derivatives of the
   // flow, up to 1e3 here.
@@ -86,7 +88,7 @@ void expect_tangent_of_the_map(Run<n> run, double h, long steps) {
 
 // Steps of h, then of -h, are the identity; so is h, flip p, h, flip p.
 template <int n>
-void expect_reversible(Run<n> run, double h, long steps) {
+void expect_reversible(const Run<n>& run, double h, long steps) {
   // Each step rounds once; an unstable orbit amplifies by |M|, below 1e3 here.
   const double tolerance = 1e3 * static_cast<double>(steps) * epsilon<double>();
   const double duration = h * static_cast<double>(steps);
@@ -106,8 +108,19 @@ void expect_reversible(Run<n> run, double h, long steps) {
   }
 }
 
+// The names of the methods that claim to keep all this, for TEST_P.
+inline std::vector<std::string> geometric_methods() {
+  std::vector<std::string> names;
+  for (const Method& method : methods()) {
+    if (method.symplectic && method.symmetric && method.family != kRattleFamily) {
+      names.push_back(method.name);
+    }
+  }
+  return names;
+}
+
 template <int n>
-void expect_geometry_laws(Run<n> run) {
+void expect_geometry_laws(const Run<n>& run) {
   constexpr double kStep = 0.1;
   expect_symplectic<n>(run, kStep, 1);
   expect_symplectic<n>(run, kStep, 30);

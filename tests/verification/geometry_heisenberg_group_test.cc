@@ -1,23 +1,21 @@
-// Symplecticity, tangent and reversibility of the Gauss methods on heisenberg-group.
+// Symplecticity, tangent and reversibility of every method that claims them, on heisenberg-group.
 #include "testing/geometry_laws.h"
 
 namespace carnot {
 namespace {
 
-template <int s>
-void check() {
+class GeometryHeisenbergGroup : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(GeometryHeisenbergGroup, Holds) {
   using Scene = scenes::HeisenbergGroup;
-  test::expect_geometry_laws<Scene::kDof>(test::gauss_run<Scene, s>);
+  const Tableau<double> tableau = make_tableau(*find_method(GetParam()));
+  test::expect_geometry_laws<Scene::kDof>(test::method_run<Scene>(tableau));
 }
 
-TEST(GeometryHeisenbergGroup, OneStage) { check<1>(); }
-TEST(GeometryHeisenbergGroup, TwoStages) { check<2>(); }
-TEST(GeometryHeisenbergGroup, ThreeStages) { check<3>(); }
-TEST(GeometryHeisenbergGroup, FourStages) { check<4>(); }
-TEST(GeometryHeisenbergGroup, FiveStages) { check<5>(); }
-TEST(GeometryHeisenbergGroup, SixStages) { check<6>(); }
-TEST(GeometryHeisenbergGroup, SevenStages) { check<7>(); }
-TEST(GeometryHeisenbergGroup, EightStages) { check<8>(); }
+INSTANTIATE_TEST_SUITE_P(Methods,
+                         GeometryHeisenbergGroup,
+                         ::testing::ValuesIn(test::geometric_methods()),
+                         [](const auto& info) { return info.param; });
 
 }  // namespace
 }  // namespace carnot

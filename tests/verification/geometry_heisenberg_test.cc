@@ -1,23 +1,21 @@
-// Symplecticity, tangent and reversibility of the Gauss methods on heisenberg.
+// Symplecticity, tangent and reversibility of every method that claims them, on heisenberg.
 #include "testing/geometry_laws.h"
 
 namespace carnot {
 namespace {
 
-template <int s>
-void check() {
+class GeometryHeisenberg : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(GeometryHeisenberg, Holds) {
   using Scene = scenes::Heisenberg;
-  test::expect_geometry_laws<Scene::kDof>(test::gauss_run<Scene, s>);
+  const Tableau<double> tableau = make_tableau(*find_method(GetParam()));
+  test::expect_geometry_laws<Scene::kDof>(test::method_run<Scene>(tableau));
 }
 
-TEST(GeometryHeisenberg, OneStage) { check<1>(); }
-TEST(GeometryHeisenberg, TwoStages) { check<2>(); }
-TEST(GeometryHeisenberg, ThreeStages) { check<3>(); }
-TEST(GeometryHeisenberg, FourStages) { check<4>(); }
-TEST(GeometryHeisenberg, FiveStages) { check<5>(); }
-TEST(GeometryHeisenberg, SixStages) { check<6>(); }
-TEST(GeometryHeisenberg, SevenStages) { check<7>(); }
-TEST(GeometryHeisenberg, EightStages) { check<8>(); }
+INSTANTIATE_TEST_SUITE_P(Methods,
+                         GeometryHeisenberg,
+                         ::testing::ValuesIn(test::geometric_methods()),
+                         [](const auto& info) { return info.param; });
 
 }  // namespace
 }  // namespace carnot

@@ -1,23 +1,21 @@
-// Symplecticity, tangent and reversibility of the Gauss methods on unicycle.
+// Symplecticity, tangent and reversibility of every method that claims them, on unicycle.
 #include "testing/geometry_laws.h"
 
 namespace carnot {
 namespace {
 
-template <int s>
-void check() {
+class GeometryUnicycle : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(GeometryUnicycle, Holds) {
   using Scene = scenes::Unicycle;
-  test::expect_geometry_laws<Scene::kDof>(test::gauss_run<Scene, s>);
+  const Tableau<double> tableau = make_tableau(*find_method(GetParam()));
+  test::expect_geometry_laws<Scene::kDof>(test::method_run<Scene>(tableau));
 }
 
-TEST(GeometryUnicycle, OneStage) { check<1>(); }
-TEST(GeometryUnicycle, TwoStages) { check<2>(); }
-TEST(GeometryUnicycle, ThreeStages) { check<3>(); }
-TEST(GeometryUnicycle, FourStages) { check<4>(); }
-TEST(GeometryUnicycle, FiveStages) { check<5>(); }
-TEST(GeometryUnicycle, SixStages) { check<6>(); }
-TEST(GeometryUnicycle, SevenStages) { check<7>(); }
-TEST(GeometryUnicycle, EightStages) { check<8>(); }
+INSTANTIATE_TEST_SUITE_P(Methods,
+                         GeometryUnicycle,
+                         ::testing::ValuesIn(test::geometric_methods()),
+                         [](const auto& info) { return info.param; });
 
 }  // namespace
 }  // namespace carnot

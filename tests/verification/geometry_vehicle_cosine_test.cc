@@ -1,23 +1,21 @@
-// Symplecticity, tangent and reversibility of the Gauss methods on vehicle-cosine.
+// Symplecticity, tangent and reversibility of every method that claims them, on vehicle-cosine.
 #include "testing/geometry_laws.h"
 
 namespace carnot {
 namespace {
 
-template <int s>
-void check() {
+class GeometryVehicleCosine : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(GeometryVehicleCosine, Holds) {
   using Scene = scenes::VehicleCosine;
-  test::expect_geometry_laws<Scene::kDof>(test::gauss_run<Scene, s>);
+  const Tableau<double> tableau = make_tableau(*find_method(GetParam()));
+  test::expect_geometry_laws<Scene::kDof>(test::method_run<Scene>(tableau));
 }
 
-TEST(GeometryVehicleCosine, OneStage) { check<1>(); }
-TEST(GeometryVehicleCosine, TwoStages) { check<2>(); }
-TEST(GeometryVehicleCosine, ThreeStages) { check<3>(); }
-TEST(GeometryVehicleCosine, FourStages) { check<4>(); }
-TEST(GeometryVehicleCosine, FiveStages) { check<5>(); }
-TEST(GeometryVehicleCosine, SixStages) { check<6>(); }
-TEST(GeometryVehicleCosine, SevenStages) { check<7>(); }
-TEST(GeometryVehicleCosine, EightStages) { check<8>(); }
+INSTANTIATE_TEST_SUITE_P(Methods,
+                         GeometryVehicleCosine,
+                         ::testing::ValuesIn(test::geometric_methods()),
+                         [](const auto& info) { return info.param; });
 
 }  // namespace
 }  // namespace carnot

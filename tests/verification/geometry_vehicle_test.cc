@@ -1,23 +1,21 @@
-// Symplecticity, tangent and reversibility of the Gauss methods on vehicle.
+// Symplecticity, tangent and reversibility of every method that claims them, on vehicle.
 #include "testing/geometry_laws.h"
 
 namespace carnot {
 namespace {
 
-template <int s>
-void check() {
+class GeometryVehicle : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(GeometryVehicle, Holds) {
   using Scene = scenes::Vehicle;
-  test::expect_geometry_laws<Scene::kDof>(test::gauss_run<Scene, s>);
+  const Tableau<double> tableau = make_tableau(*find_method(GetParam()));
+  test::expect_geometry_laws<Scene::kDof>(test::method_run<Scene>(tableau));
 }
 
-TEST(GeometryVehicle, OneStage) { check<1>(); }
-TEST(GeometryVehicle, TwoStages) { check<2>(); }
-TEST(GeometryVehicle, ThreeStages) { check<3>(); }
-TEST(GeometryVehicle, FourStages) { check<4>(); }
-TEST(GeometryVehicle, FiveStages) { check<5>(); }
-TEST(GeometryVehicle, SixStages) { check<6>(); }
-TEST(GeometryVehicle, SevenStages) { check<7>(); }
-TEST(GeometryVehicle, EightStages) { check<8>(); }
+INSTANTIATE_TEST_SUITE_P(Methods,
+                         GeometryVehicle,
+                         ::testing::ValuesIn(test::geometric_methods()),
+                         [](const auto& info) { return info.param; });
 
 }  // namespace
 }  // namespace carnot

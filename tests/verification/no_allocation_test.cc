@@ -6,6 +6,8 @@
 #include <memory>
 #include <vector>
 
+#include "carnot/gauss.h"
+#include "carnot/methods.h"
 #include "carnot/tangent_flow.h"
 #include "testing/runs.h"
 
@@ -76,20 +78,19 @@ TEST(AllocationCounterTest, SeesEveryKind) {
 }
 
 template <class Scene, int s>
-void expect_no_allocation(double h, bool newton) {
+void expect_no_allocation(const Tableau<double, s>& tableau, double h, bool newton) {
   using System = VelocityConstraints<Scene>;
-  using Step = Gauss<System, s>;
+  using Step = RungeKutta<System, s>;
   constexpr int size = Step::kSize;
   const System system(test::uneven<Scene>());
   test::Generator generator(1);
   long newton_steps = 0;
-  (void)gauss_tableau<double, s>();  // made once, on first use
   for (int sample = 0; sample < 20; ++sample) {
     const auto start = test::random_state<Scene::kDof>(generator);
     const StepPlan plan = StepPlan::equal(0, 3 * h, 3);
     FlowReport report;
     EXPECT_EQ(allocations_in([&] {
-                Step step(system);
+                Step step(system, tableau);
                 auto z = start;
                 report = flow(step, plan, z);
               }),
@@ -97,7 +98,7 @@ void expect_no_allocation(double h, bool newton) {
     newton_steps += report.newton_steps;
     EXPECT_EQ(allocations_in([&] {
                 using Square = Matrix<double, size, size>;
-                Step step(system);
+                Step step(system, tableau);
                 auto z = start;
                 Compensated<Square> m{Square::Identity(), Square::Zero()};
                 report = tangent_flow(
@@ -106,6 +107,11 @@ void expect_no_allocation(double h, bool newton) {
               0);
   }
   EXPECT_EQ(newton_steps > 0, newton) << newton_steps;
+}
+
+template <class Scene, int s>
+void expect_no_allocation(double h, bool newton) {
+  expect_no_allocation<Scene, s>(fixed_gauss_tableau<double, s>(), h, newton);
 }
 
 constexpr double kFixedPointStep = 0.1;
@@ -122,6 +128,15 @@ TEST(NoAllocationTest, EightStages) {
 }
 TEST(NoAllocationTest, HeisenbergGroup) {
   expect_no_allocation<scenes::HeisenbergGroup, 4>(kFixedPointStep, false);
+}
+// Full, diagonal, partitioned and explicit, with the number of stages known at run time.
+TEST(NoAllocationTest, EveryCoupling) {
+  for (const char* name : {"gauss24", "midpoint8", "lobatto4", "dop853"}) {
+    const Tableau<double> tableau = make_tableau(*find_method(name));
+    expect_no_allocation<scenes::VehicleCosine>(tableau, kFixedPointStep, false);
+    if (tableau.coupling == Coupling::kExplicit) continue;
+    expect_no_allocation<scenes::VehicleCosine>(tableau, kNewtonStep, true);
+  }
 }
 
 #else

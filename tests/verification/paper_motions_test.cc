@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "carnot/flow.h"
+#include "carnot/gauss.h"
 #include "testing/runs.h"
 
 namespace carnot {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "carnot/flow.h"
+#include "carnot/gauss.h"
 #include "testing/runs.h"
 
 namespace carnot {
