@@ -32,7 +32,7 @@ const std::vector<Choice>& choices() {
       {"vehicle", {}, {0.4, 0.3, -0.3, 0.55, 0, 0, 0.75, -1}, 20, 0.5, 0.2, kManySteps},
       {"bicycle", {}, {-0.1, -0.15, 0.9, 0.55, 0, 0, -0.8, 0.05}, 10, 0.4, 0.2, kSteps},
       {"vehicle-cosine", {}, {0.75, 0.65, 0.65, -0.45, -0.9, 0.35, 0.2, 0.35}, 10, 0.4, 0, 0},
-      {"pendulum", {}, {0.4, 0.3, 0.5, 0.6}, 15, 0.5, 0, 0},
+      {"pendulum", {}, {0.4, 0.3, 0.5, 0.6}, 5, 0.5, 0, 0},
       // Spring and trap keep them near the origin.
       {"appell", {{"stiffness", 1}}, {-0.1, -0.55, 0.05, 0.85, -0.1, -0.15}, 20, 0.4, 0.3, kSteps},
       {"magnetic-particle", {}, {-0.55, -0.2, -0.2, 0.35}, 10, 0.4, 0.3, kSteps},

@@ -156,34 +156,6 @@ TEST(GeneralizedHamiltonianTest, PresymplecticFormIsPreserved) {
   }
 }
 
-// Prop. 3 and 4 without Darboux coordinates: J (z1 - z0) = h grad H(midpoint) solved for all of z
-// at once keeps dz ^ J dz for every z0, and its J z1 is that of the midpoint rule on (q, p).
-TEST(GeneralizedHamiltonianTest, MidpointRuleInAnyBasis) {
-  constexpr double kStep = 0.1;
-  const auto scene = test::in_random_basis(kCanonical, 8);
-  const Anywhere system(scene);
-  const Matrix<double, 10, 10> j = scene.structure_matrix();
-  const auto tableau = gauss_tableau<double>(1);
-  test::Generator generator(8);
-  for (int sample = 0; sample < 5; ++sample) {
-    auto state = start_at(system, scene.from_original(test::random_vector<10>(generator)));
-    const Vector<double, 10> z = lifted(system, state);
-    const test::NaiveMidpoint<VehicleAnywhere> naive(scene, kStep, z);
-    // The linear systems have a condition of about cond(A)^2.
-    const double tolerance = 10 * std::pow(scene.condition(), 2) * kEps;
-    EXPECT_LE(naive.residual, tolerance);
-    const Matrix<double, 10, 10> form = naive.tangent.transpose() * j * naive.tangent;
-    EXPECT_LE((form - j).cwiseAbs().maxCoeff(), tolerance * naive.tangent.squaredNorm());
-
-    auto midpoint = method_on(system, tableau);
-    ASSERT_EQ(midpoint.step(0, kStep, state).status, StepStatus::kOk);
-    const Vector<double, 10> end = lifted(system, state);
-    EXPECT_LE((j * (naive.end - end)).norm(), tolerance * j.norm());
-    const auto stage = system.to_darboux(naive.middle);
-    EXPECT_LE((stage.y - midpoint.algebraic(0)).norm(), tolerance);
-  }
-}
-
 // J z' = grad H(z) at random points of H_y = 0 in the scene's own coordinates, z' by Jets.
 TEST(GeneralizedHamiltonianTest, RateSolvesTheEquations) {
   const auto scene = test::in_random_basis(kCanonical, 11);

@@ -151,6 +151,35 @@ TEST(MagneticParticleTest, DarbouxCoordinatesDoNotMatter) {
   }
 }
 
+// Prop. 3 and 4 in any basis: J (z1 - z0) = h grad H(midpoint), solved for all of z at once, keeps
+// dz ^ J dz for every z0, and is the midpoint rule on (q, p) with the exact y at its stage.
+TEST(MagneticParticleTest, MidpointRuleInAnyBasis) {
+  using Plain = test::InBasis<MagneticParticle>;
+  constexpr double kStep = 0.1;
+  const Plain scene = test::in_random_basis(kTrapped, 8);
+  const GeneralizedHamiltonian<Plain> system(scene);
+  const Matrix<double, 6, 6> j = scene.structure_matrix();
+  test::Generator generator(8);
+  for (int sample = 0; sample < 5; ++sample) {
+    const Vector<double, 6> z = scene.from_original(test::random_vector<6>(generator));
+    const test::NaiveMidpoint<Plain> step(scene, kStep, z);
+    // The linear systems have a condition of about cond(A)^2.
+    const double tolerance = 10 * std::pow(scene.condition(), 2) * kEps;
+    EXPECT_LE(step.residual, tolerance);
+    const Matrix<double, 6, 6> form = step.tangent.transpose() * j * step.tangent;
+    EXPECT_LE((form - j).cwiseAbs().maxCoeff(), tolerance * step.tangent.squaredNorm());
+
+    const auto stage = system.to_darboux(step.middle);
+    const auto change = system.to_darboux(Vector<double, 6>(step.end - z));
+    Pair y = stage.y;
+    Rate<double, 2> rate;
+    ASSERT_EQ(system.rate(0.0, stage.q, stage.p, y, rate), RateStatus::kOk);
+    EXPECT_LE((stage.y - y).norm(), tolerance);
+    EXPECT_LE((change.q - kStep * rate.q_dot).norm(), tolerance);
+    EXPECT_LE((change.p - kStep * rate.p_dot).norm(), tolerance);
+  }
+}
+
 // x p_y - y p_x is quadratic, so a Gauss method keeps it to round-off; H it keeps nearly.
 TEST(MagneticParticleTest, Invariants) {
   const System system(kTrapped);
