@@ -124,7 +124,7 @@ void add_chord_constraint(PaperWork& work, PaperPart& part) {
   const double size = std::max(std::abs(end[2]), std::abs(end[3]));  // the angles, ever growing
   const double rounding = kEps * size / kCosineStep;
   const double midpoint = chord_constraint("midpoint", kCosineStep);
-  part.rows.push_back({"|g(q_mid).(q1 - q0)/h|, T = 100",
+  part.rows.push_back({"|g(q_mid).(q1 - q0)/h|, midpoint rule",
                        "-",
                        fmt::format("{:.1e}", midpoint),
                        holds(midpoint <= 2 * rounding),

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -113,18 +112,22 @@ void add_trapped(PaperWork& work, PaperPart& part) {
   std::vector<double> z = vehicle_start(segment, {1, 0.5, 0.3, 0.8}, 1, 0.2);
   const StepPlan plan = StepPlan::of_length(0, kTime, kCosineStep);
   const Trajectory trajectory = work.flow(segment, plan, z, 1001).trajectory;
-  std::array<double, 2> largest{};  // |lambda| in either half
+  // The trajectory is chaotic: only sizes mean something.
+  constexpr double kEarly = 20;
+  constexpr double kGrowth = 10;
+  double early = 0;
+  double all = 0;
   for (std::size_t i = 0; i < trajectory.t.size(); ++i) {
-    double& half = largest[2 * i < trajectory.t.size() ? 0 : 1];
-    for (const double l : trajectory.lambda[i]) half = std::max(half, std::abs(l));
+    for (const double l : trajectory.lambda[i]) all = std::max(all, std::abs(l));
+    if (trajectory.t[i] <= kEarly) early = all;
   }
   part.rows.push_back({"lambda from other initial values, T = 1000",
                        "-",
-                       fmt::format("{:.1f}, 2nd half {:.1f}", largest[0], largest[1]),
-                       holds(largest[1] > 1.5 * largest[0]),
+                       fmt::format("max {:.0f}, until t = 20 {:.1f}", all, early),
+                       holds(all > kGrowth * early),
                        "grows from q = (1, 0.5, 0.3, 0.8), u = (1, 0.2), lambda = 0, as from most: "
                        "the reason for the choice",
-                       largest[1] / largest[0]});
+                       all / early});
 }
 
 // Energy error at every node of the beginning.

@@ -123,7 +123,7 @@ TEST(PaperCommand, RefusesADirectoryItMayNotWriteIn) {
 }
 
 TEST(PaperCommand, LeavesNothingWhenInterrupted) {
-  for (const char* delay : {"0.1", "1.5"}) {  // in the runs; among the figures, perhaps
+  for (const char* delay : {"0.5", "2.5"}) {  // in the runs; among the figures, perhaps
     const Sandbox sandbox;
     const Outcome outcome =
         sandbox.run({"paper", "--output", "a/b"},

@@ -98,7 +98,7 @@ TEST_P(AuditTest, ConstraintsHoldToRoundOff) {
   for (const Method& method : methods_of(subject_)) {
     SCOPED_TRACE(method.name);
     const EnergyLaw law = measure_energy(
-        subject_.segment(method.name), subject_.start, subject_.step, 10 * kSteps, Progress());
+        subject_.segment(method.name), subject_.start, subject_.step, 2 * kSteps, Progress());
     EXPECT_LE(law.constraint_error, kRoundOff);
     EXPECT_LE(law.holonomic_error, kRoundOff);
   }
