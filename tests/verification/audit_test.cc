@@ -183,9 +183,9 @@ TEST(MidpointConstraint, HoldsForTheMidpointRuleAlone) {
   };
   EXPECT_LE(measured("midpoint"), 100 * kEps);
   EXPECT_GT(measured("gauss4"), 1e-6);
-  const AuditSubject control = subject_of("bicycle");
-  EXPECT_TRUE(std::isnan(measure_midpoint_constraint(
-      control.segment("midpoint"), control.start, control.step, kSteps)));
+  const AuditSubject drift = subject_of("pendulum");  // no transcription
+  EXPECT_TRUE(std::isnan(
+      measure_midpoint_constraint(drift.segment("midpoint"), drift.start, drift.step, kSteps)));
 }
 
 // A method that claims too much, or too little, is found out.
