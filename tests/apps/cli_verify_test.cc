@@ -123,23 +123,6 @@ TEST(Verify, TakesAnySceneFromAGenericStart) {
   EXPECT_EQ(json["rows"][0]["energy_verdict"], "not asked");
 }
 
-TEST(Verify, DoesNotDependOnTheThreads) {
-  const auto rows = [](const char* threads) {
-    return run({"verify",
-                "heisenberg",
-                "--method",
-                "gauss4,lobatto4,midpoint",
-                "--steps",
-                "1000",
-                "--threads",
-                threads,
-                "--json"})
-        .json()["rows"]
-        .dump();
-  };
-  EXPECT_EQ(rows("1"), rows("3"));
-}
-
 TEST(Verify, RefusesBadInput) {
   const std::map<std::vector<std::string>, std::string> cases{
       {{"verify", "heisenbreg"}, "did you mean heisenberg?"},
