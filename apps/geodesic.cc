@@ -43,7 +43,7 @@ struct Options {
   std::string max_length;
   std::string starts;
   std::string tolerance = "1e-10";
-  std::string minimiser = "ceres";
+  std::string minimiser = "newton";
   std::string guess;
   bool mod_angles = false;
 };
@@ -133,7 +133,7 @@ void add_search_options(CLI::App& app, Options& options) {
   add("--max-length", options.max_length, "A", "leave out longer ones");
   add("--starts", options.starts, "N", "paths to start from (as many as the task needs)");
   add("--tolerance", options.tolerance, "TOL", "largest error at the end (1e-10)");
-  add("--minimiser", options.minimiser, "NAME", "ceres, nlopt or nlopt:NAME (ceres)");
+  add("--minimiser", options.minimiser, "NAME", "newton, ceres, nlopt or nlopt:NAME (newton)");
   add("--guess", options.guess, "P0", "momentum to start from instead");
   app.add_flag("--mod-angles", options.mod_angles, "ends agree modulo periods (not available yet)");
 }

@@ -96,17 +96,21 @@ DiscreteNewton tighten(const BoundaryValueProblem& problem,
   const double h = problem.time / path.intervals;
   Equations equations(problem.segment, h, path.intervals);
   BandedLu matrix(equations.size(), equations.band(), equations.band());
-  std::vector<double> direction;
   std::vector<double> residual;
+  std::vector<double> direction;
+  std::vector<double> simplified;
   Path trial = path;
   DiscreteNewton result;
-  const double scale = equations.evaluate(path, direction, &matrix);
-  result.residual = norm(direction);
+  const double scale = equations.evaluate(path, residual, &matrix);
+  result.residual = norm(residual);
   while (result.iterations < options.max_iterations && std::isfinite(result.residual)) {
     result.converged = result.residual <= options.tolerance * scale;
     if (result.converged) break;
     ++result.iterations;
-    if (!matrix.solve(direction)) break;
+    if (!matrix.factor()) break;
+    direction = residual;
+    matrix.substitute(direction);
+    const double length = norm(direction);
     double step = 1;
     double reached = 0;
     for (; step >= kShortestStep; step *= 0.5) {
@@ -114,11 +118,14 @@ DiscreteNewton tighten(const BoundaryValueProblem& problem,
       equations.evaluate(trial, residual, nullptr);
       reached = norm(residual);
       if (reached < (1 - 0.1 * step) * result.residual) break;
+      simplified = residual;
+      matrix.substitute(simplified);
+      if (norm(simplified) < (1 - 0.25 * step) * length) break;
     }
     if (step < kShortestStep) break;
     std::swap(path.q, trial.q);
     std::swap(path.lambda, trial.lambda);
-    equations.evaluate(path, direction, &matrix);
+    equations.evaluate(path, residual, &matrix);
     result.residual = reached;
   }
   fill_momenta(problem.segment, h, path);

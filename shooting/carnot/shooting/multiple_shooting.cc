@@ -2,11 +2,12 @@
 
 namespace carnot {
 
-std::vector<std::string> minimisers() { return {"ceres", "nlopt", "nlopt:slsqp"}; }
+std::vector<std::string> minimisers() { return {"newton", "ceres", "nlopt", "nlopt:slsqp"}; }
 
 Shooting shoot(const BoundaryValueProblem& problem, const ShootingOptions& options, Knots& knots) {
-  return options.minimiser == "ceres" ? shoot_with_ceres(problem, options, knots)
-                                      : shoot_with_nlopt(problem, options, knots);
+  if (options.minimiser == "newton") return shoot_with_newton(problem, options, knots);
+  if (options.minimiser == "ceres") return shoot_with_ceres(problem, options, knots);
+  return shoot_with_nlopt(problem, options, knots);
 }
 
 }  // namespace carnot

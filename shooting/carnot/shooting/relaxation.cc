@@ -148,7 +148,7 @@ Relaxation relax(const BoundaryValueProblem& problem,
   const double spread = 1 + std::abs(state.max_potential);
   Transcription shared{
       segment, h, options.penalty * state.mass, state.max_potential + spread, state.potential};
-  path.lambda.assign(static_cast<std::size_t>(path.intervals) * segment.transcribed, 0.0);
+  path.lambda.resize(static_cast<std::size_t>(path.intervals) * segment.transcribed, 0.0);
   std::vector<double>& lambda = path.lambda;
 
   Relaxation result;

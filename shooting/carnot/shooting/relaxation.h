@@ -30,7 +30,8 @@ struct Relaxation {
   int iterations = 0;
 };
 
-// Relaxes `path` in place and fills its momenta. The ends stay fixed.
+// Relaxes `path` in place and fills its momenta. The ends stay fixed. Starts from the multipliers
+// of the path; none are zeros.
 Relaxation relax(const BoundaryValueProblem& problem, const RelaxationOptions& options, Path& path);
 
 }  // namespace carnot

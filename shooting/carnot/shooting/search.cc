@@ -8,7 +8,7 @@
 
 #include "carnot/shooting/discrete_newton.h"
 #include "carnot/shooting/momentum_starts.h"
-#include "carnot/shooting/multiple_shooting.h"
+#include "carnot/shooting/polish.h"
 #include "carnot/shooting/starts.h"
 #include "carnot/shooting/sweep.h"
 
@@ -50,7 +50,7 @@ bool Search::run() {
 void Search::polish_guess() {
   starts_ = 1;
   for (const int segments : {kSegments, 1}) {
-    add(polish(knots_of(problem_, options_.guess, segments, kFirstSteps)));
+    add(polish(problem_, options_, knots_of(problem_, options_.guess, segments, kFirstSteps)));
     if (!extremals_.empty()) break;
   }
   converged_ = extremals_.empty() ? 0 : 1;
@@ -113,7 +113,7 @@ void Search::momentum_round(int count) {
     const std::vector<double> p0 = momentum_start(problem_, options_.seed, starts_ + i);
     if (p0.empty()) return;
     const int segments = i % 2 == 0 ? kSegments : 1;
-    polished[i] = polish(knots_of(problem_, p0, segments, kFirstSteps));
+    polished[i] = polish(problem_, options_, knots_of(problem_, p0, segments, kFirstSteps));
   });
   starts_ += count;
   for (const std::optional<Extremal>& extremal : polished) {
@@ -180,7 +180,7 @@ void Search::absorb(const std::vector<Candidate>& candidates) {
   }
   std::vector<std::optional<Extremal>> polished(fresh.size());
   parallel_for(static_cast<int>(fresh.size()), threads_, [&](int i) {
-    polished[i] = polish(knots_of(*fresh[i], kSegments));
+    polished[i] = polish(problem_, options_, *fresh[i]);
   });
   for (std::size_t i = 0; i < fresh.size(); ++i) {
     const int index = add(polished[i]);
@@ -192,25 +192,19 @@ void Search::absorb(const std::vector<Candidate>& candidates) {
 }
 
 Search::Candidate Search::relax_start(int i) const {
-  Start start = make_start(problem_, options_.seed, i);
+  // Collapsed to the straight line, which violates the constraints: a stiffer penalty holds it.
+  constexpr double kCollapsed = 0.5;
+  constexpr int kAttempts = 3;
+  constexpr double kStiffer = 8;
+  const Start start = make_start(problem_, options_.seed, i);
+  RelaxationOptions relaxation = start.relaxation;
   Candidate candidate;
-  relax(problem_, start.relaxation, start.path);
-  candidate.found = tighten(problem_, {}, start.path).converged;
-  candidate.path = std::move(start.path);
-  return candidate;
-}
-
-std::optional<Extremal> Search::polish(const Knots& knots) const {
-  ShootingOptions shooting;
-  shooting.minimiser = options_.minimiser;
-  for (const long steps : {kFirstSteps / 2, 2 * kFirstSteps}) {
-    Knots joined = knots;
-    shooting.steps = steps;
-    if (!shoot(problem_, shooting, joined).converged) continue;
-    auto extremal = verify(problem_, std::move(joined), kFirstSteps, options_.tolerance);
-    if (extremal) return extremal;
+  for (int attempt = 0; attempt < kAttempts; ++attempt, relaxation.penalty *= kStiffer) {
+    candidate.path = start.path;
+    if (relax(problem_, relaxation, candidate.path).violation < kCollapsed) break;
   }
-  return std::nullopt;
+  candidate.found = tighten(problem_, {}, candidate.path).converged;
+  return candidate;
 }
 
 int Search::add(const std::optional<Extremal>& extremal) {

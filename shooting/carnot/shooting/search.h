@@ -38,7 +38,7 @@ class Search {
   [[nodiscard]] bool any_discrete() const { return !discrete_.empty(); }
 
  private:
-  // A relaxed path that satisfies the discrete equations,.
+  // A relaxed path that satisfies the discrete equations.
   struct Candidate {
     bool found = false;
     Path path;
@@ -58,7 +58,6 @@ class Search {
   // Polishes what is new among the candidates and adds it to the list.
   void absorb(const std::vector<Candidate>& candidates);
   [[nodiscard]] Candidate relax_start(int i) const;
-  [[nodiscard]] std::optional<Extremal> polish(const Knots& knots) const;
   // Adds what is new, and its mirror partners. Returns the index in the list, or -1.
   int add(const std::optional<Extremal>& extremal);
   // Index of a discrete extremal with the same nodes, or with those of its mirror partner, which

@@ -1,0 +1,79 @@
+#include "carnot/shooting/polish.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "carnot/shooting/multiple_shooting.h"
+#include "carnot/shooting/refinement.h"
+
+namespace carnot {
+namespace {
+
+constexpr int kSegments = 8;    // at least; divides the intervals of a path
+constexpr long kFewSteps = 16;  // of the method over the whole time, at least
+
+// Joins the knots on a refined path. Where a segment cannot be integrated, or magnifies too much
+// for Newton's method to keep its digits, they are set closer together.
+std::optional<Extremal> join(const BoundaryValueProblem& problem,
+                             const GeodesicOptions& options,
+                             const Refinement& refined) {
+  constexpr double kMaxGrowth = 1e5;
+  constexpr int kIntervalsPerSegment = 32;
+  constexpr int kIntervalsPerStep = 8;
+  constexpr int kAttempts = 4;
+  ShootingOptions shooting;
+  shooting.minimiser = options.minimiser;
+  shooting.max_growth = kMaxGrowth;
+  shooting.steps = std::max<long>(kFewSteps, refined.intervals / kIntervalsPerStep);
+  int segments = std::max(kSegments, refined.intervals / kIntervalsPerSegment);
+  for (int attempt = 0; attempt < kAttempts && segments <= refined.path.intervals; ++attempt) {
+    Knots knots = knots_of(refined.path, segments);
+    const Shooting joined = shoot(problem, shooting, knots);
+    if (joined.converged) {
+      return verify(problem, std::move(knots), 2 * shooting.steps, options.tolerance);
+    }
+    const bool begun = joined.iterations > 0 || joined.growth > 0;
+    if (begun && joined.growth <= kMaxGrowth) break;
+    segments *= 2;
+    shooting.steps = begun ? std::max<long>(shooting.steps, segments) : 2 * shooting.steps;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Extremal> polish(const BoundaryValueProblem& problem,
+                               const GeodesicOptions& options,
+                               const Path& path) {
+  RefinementOptions refinement;
+  for (const double enough : {refinement.enough, 0.1 * refinement.enough}) {
+    refinement.enough = enough;
+    const Refinement refined = refine(problem, refinement, path);
+    if (!refined.found) return std::nullopt;
+    auto extremal = join(problem, options, refined);
+    if (extremal) return extremal;
+  }
+  return std::nullopt;
+}
+
+std::optional<Extremal> polish(const BoundaryValueProblem& problem,
+                               const GeodesicOptions& options,
+                               const Knots& knots) {
+  ShootingOptions shooting;
+  std::vector<std::string> ways{options.minimiser};
+  if (ways.front() == "newton") ways.emplace_back("ceres");  // which reaches further
+  for (const std::string& way : ways) {
+    for (const long steps : {kFewSteps, 4 * kFewSteps}) {
+      Knots joined = knots;
+      shooting.minimiser = way;
+      shooting.steps = steps;
+      if (!shoot(problem, shooting, joined).converged) continue;
+      auto extremal = verify(problem, std::move(joined), 2 * kFewSteps, options.tolerance);
+      if (extremal) return extremal;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace carnot

@@ -1,0 +1,24 @@
+// From a discrete extremal, or a guess of knots, to a verified extremal.
+#pragma once
+
+#include <optional>
+
+#include "carnot/shooting/geodesic.h"
+#include "carnot/shooting/knots.h"
+#include "carnot/shooting/path.h"
+#include "carnot/shooting/verification.h"
+
+namespace carnot {
+
+// Refines the path (refinement.h) and joins the knots on it (multiple_shooting.h): as many of them,
+// and as many steps, as the tangent flow asks for. Nothing when no extremal is near.
+std::optional<Extremal> polish(const BoundaryValueProblem& problem,
+                               const GeodesicOptions& options,
+                               const Path& path);
+
+// The same from knots that may be far from joined.
+std::optional<Extremal> polish(const BoundaryValueProblem& problem,
+                               const GeodesicOptions& options,
+                               const Knots& knots);
+
+}  // namespace carnot
