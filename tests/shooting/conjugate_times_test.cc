@@ -59,10 +59,33 @@ TEST(ConjugateTimes, MirrorPartnerOfSidewaysParking) {
   EXPECT_NEAR(result.times[0], 0.970521975, 1e-8);  // p0 has eleven digits
 }
 
-// Steering in place is abnormal: dq/dp0 is singular at all times and nothing can be counted.
-TEST(ConjugateTimes, UnknownOnAnAbnormalExtremal) {
+// Full circles: T itself is conjugate, and nothing before.
+TEST(ConjugateTimes, CountsTheEnd) {
+  const double w = 2 * kPi;
+  const ConjugateTimes result = times_of(test::heisenberg_group({0, 0, 1}), {1, 0.5, w}, 1);
+  ASSERT_TRUE(result.known);
+  ASSERT_EQ(result.times.size(), 1U);
+  EXPECT_EQ(result.times[0], 1);
+  EXPECT_EQ(result.at_end, 1);
+}
+
+// Steering in place is abnormal: dq/dp0 is singular at all times. Steering costs the same as going
+// straight on in the angle, so the other directions are never conjugate.
+TEST(ConjugateTimes, LeaveTheCorankOfAnAbnormalExtremalOut) {
   const BoundaryValueProblem problem = test::vehicle({0, 0, 0, 0}, {0, 0, 0, kPi / 2});
-  EXPECT_FALSE(times_of(problem, {0, 0, 0, kPi / 2}, 1).known);
+  const ConjugateTimes result = times_of(problem, {0, 0, 0, kPi / 2}, 1);
+  EXPECT_TRUE(result.known);
+  EXPECT_EQ(result.corank, 1);
+  EXPECT_TRUE(result.times.empty());
+}
+
+// Growth of the tangent flow (here 1e9) makes dq(T)/dp0 look singular; its plane does not.
+TEST(ConjugateTimes, StraightAheadHasNone) {
+  const BoundaryValueProblem problem = test::vehicle({0, 0, 0, 0}, {20, 0, 0, 0});
+  const ConjugateTimes result = times_of(problem, {20, 0, 0, 0}, 1);
+  EXPECT_TRUE(result.known);
+  EXPECT_EQ(result.corank, 0);
+  EXPECT_TRUE(result.times.empty());
 }
 
 }  // namespace

@@ -105,7 +105,8 @@ TEST(Geodesic, SteeringInPlaceIsAbnormalAndSolved) {
   const GeodesicReport report = find(test::vehicle({0, 0, 0, 0}, {0, 0, 0, kPi / 2}));
   ASSERT_EQ(report.status, GeodesicStatus::kConverged) << report.message;
   EXPECT_NEAR(report.geodesics[0].action, kPi * kPi / 8, 1e-10);
-  EXPECT_EQ(report.geodesics[0].label, Label::kUnknown);
+  EXPECT_EQ(report.geodesics[0].abnormal, true);
+  EXPECT_EQ(report.geodesics[0].label, Label::kLocallyMinimal);
 }
 
 TEST(Geodesic, HeisenbergGroupClosedForm) {
@@ -149,6 +150,18 @@ TEST(Geodesic, FarTargetsAreVerifiedAtKnots) {
   EXPECT_LE(geodesic.knot_defect, 1e-10);
   EXPECT_EQ(geodesic.trajectory.t.size(), 201U);
   EXPECT_TRUE(std::is_sorted(geodesic.trajectory.t.begin(), geodesic.trajectory.t.end()));
+}
+
+// A short steering axle on a long vehicle: boundary layers that the first grid does not see.
+TEST(Geodesic, StiffVehiclesAreSolved) {
+  const GeodesicReport sideways = find(test::stiff_vehicle({0, 1, 0, 0}));
+  ASSERT_EQ(sideways.status, GeodesicStatus::kConverged) << sideways.message;
+  EXPECT_NEAR(sideways.geodesics[0].action, 18.2411417333128, 1e-9);
+  const GeodesicReport ahead = find(test::stiff_vehicle({50, 5, 0, 0}));
+  ASSERT_EQ(ahead.status, GeodesicStatus::kConverged) << ahead.message;
+  EXPECT_EQ(ahead.geodesics[0].verification, Verification::kKnots);
+  EXPECT_LE(ahead.geodesics[0].knot_defect, 1e-10);
+  EXPECT_EQ(ahead.geodesics[0].label, Label::kLocallyMinimal);
 }
 
 TEST(Geodesic, TimeScalesTheAction) {

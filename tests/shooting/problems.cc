@@ -47,6 +47,14 @@ BoundaryValueProblem long_vehicle(std::vector<double> from, std::vector<double> 
   return {make_segment(scene), std::move(from), std::move(to)};
 }
 
+BoundaryValueProblem stiff_vehicle(std::vector<double> to) {
+  scenes::Vehicle scene;
+  scene.alpha = 0.1;
+  scene.beta = 0.02;
+  scene.length = 2.5;
+  return {make_segment(scene), {0, 0, 0, 0}, std::move(to)};
+}
+
 BoundaryValueProblem vehicle_cosine(std::vector<double> from, std::vector<double> to, double time) {
   return {make_segment(scenes::VehicleCosine{}), std::move(from), std::move(to), time};
 }

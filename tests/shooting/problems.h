@@ -13,6 +13,8 @@ BoundaryValueProblem sideways();        // (0, 0, 0, 0) to (0, 1, 0, 0)
 BoundaryValueProblem straight_ahead();  // (0, 0, 0, 0) to (1, 0, 0, 0)
 // The same scene with other parameters.
 BoundaryValueProblem long_vehicle(std::vector<double> from, std::vector<double> to, double length);
+// alpha = .1, beta = .02, length = 2.5, from the origin.
+BoundaryValueProblem stiff_vehicle(std::vector<double> to);
 
 BoundaryValueProblem vehicle_cosine(std::vector<double> from, std::vector<double> to, double time);
 BoundaryValueProblem heisenberg_group(std::vector<double> to, double time = 1);  // from the origin

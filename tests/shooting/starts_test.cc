@@ -17,8 +17,8 @@ TEST(Starts, AreTheSameForTheSameSeedAndIndex) {
   for (const int i : {0, 3, 10}) {
     EXPECT_EQ(make_start(problem, 5, i).path.q, make_start(problem, 5, i).path.q);
   }
-  EXPECT_NE(make_start(problem, 5, 0).path.q, make_start(problem, 6, 0).path.q);
-  EXPECT_NE(make_start(problem, 5, 0).path.q, make_start(problem, 5, 1).path.q);
+  EXPECT_NE(make_start(problem, 5, 1).path.q, make_start(problem, 6, 1).path.q);
+  EXPECT_NE(make_start(problem, 5, 2).path.q, make_start(problem, 5, 1).path.q);
 }
 
 TEST(Starts, JoinTheEnds) {
@@ -47,16 +47,24 @@ TEST(Starts, DoNotDependOnTheOrigin) {
   }
 }
 
+TEST(Starts, BeginWithTheStraightLine) {
+  const Path path = make_start(test::vehicle({0, 0, 0, 0}, {2, 1, 0, 0}), 0, 0).path;
+  for (int i = 0; i <= path.intervals; ++i) {
+    EXPECT_EQ(path.configuration(i)[0], 2.0 * i / path.intervals);
+    EXPECT_EQ(path.configuration(i)[2], 0);
+  }
+}
+
 TEST(Starts, GrowWithTheTarget) {
   const auto extent = [](double y) {
-    const Path path = make_start(test::vehicle({0, 0, 0, 0}, {0, y, 0, 0}), 0, 0).path;
+    const Path path = make_start(test::vehicle({0, 0, 0, 0}, {0, y, 0, 0}), 0, 6).path;
     double largest = 0;
     for (int i = 0; i <= path.intervals; ++i) {
       largest = std::max(largest, std::abs(path.configuration(i)[0]));
     }
     return largest;
   };
-  // e = 1/3 for start 0: a thousandth of the displacement, a tenth of the wiggle.
+  // e = 1/3 for start 6: a thousandth of the displacement, a tenth of the wiggle.
   EXPECT_NEAR(extent(1e-3) / extent(1), 0.1, 1e-3);
 }
 

@@ -10,13 +10,13 @@
 namespace carnot {
 namespace {
 
-// The largest |value(q)| along the path: of samples, and of the parabola through the best three.
+// The largest |value(q)| along the path: at the nodes, and of the parabola through the best three.
 void add_extremes(const BoundaryValueProblem& problem,
                   const Knots& knots,
                   long steps,
                   Geodesic& geodesic) {
   if (problem.segment.info.extremes.empty()) return;
-  const Trajectory fine = survey(problem, knots, steps, 2 * steps + 1).trajectory;
+  const Trajectory fine = survey(problem, knots, steps, steps + 1).trajectory;
   for (const Extreme& extreme : problem.segment.info.extremes) {
     std::vector<double> size;
     for (const auto& q : fine.q) size.push_back(std::abs(extreme.value(q.data())));
@@ -31,39 +31,76 @@ void add_extremes(const BoundaryValueProblem& problem,
   }
 }
 
-// Abnormal: dq(t)/dp0 is singular already on the way. A family: it is singular at T only.
-void classify_singular(const BoundaryValueProblem& problem, Geodesic& geodesic) {
-  constexpr double kOnTheWay = 0.43;  // a time without symmetry
-  std::vector<double> z;
+// Whether T is conjugate because the extremal is one of a continuum: a step along each direction
+// that does not move the end leads, corrected, to another extremal. Where it is an isolated fold
+// the correction leads back. Nothing where only some directions do.
+std::optional<int> family_dimension(const BoundaryValueProblem& problem,
+                                    const Geodesic& geodesic,
+                                    int conjugate,
+                                    int corank) {
+  constexpr double kStep = 1e-3;  // relative to p0
+  constexpr double kTolerance = 1e-10;
   const long steps = geodesic.plan.count / 2;
-  const auto way = end_point_jacobian(problem, geodesic.p0, kOnTheWay * problem.time, steps, z);
-  const auto end = end_point_jacobian(problem, geodesic.p0, problem.time, steps, z);
-  if (!way || !end) return;
-  const int always = nullity(*way) - problem.segment.holonomic;
-  geodesic.abnormal = always > 0;
-  geodesic.family_dimension = std::max(0, nullity(*end) - nullity(*way));
-  if (*geodesic.family_dimension > 0) geodesic.label = Label::kSingular;
+  std::vector<double> z;
+  const auto tangent = end_point_tangent(problem, geodesic.p0, problem.time, steps, z);
+  if (!tangent) return std::nullopt;
+  const Eigen::MatrixXd kernel = kernel_of(*tangent, 1e-8);
+  if (kernel.cols() != conjugate + corank) return std::nullopt;
+  const auto n = static_cast<Eigen::Index>(geodesic.p0.size());
+  const Eigen::Map<const Eigen::VectorXd> p(geodesic.p0.data(), n);
+  const double step = kStep * p.norm();
+  int moved = 0;
+  for (Eigen::Index j = 0; j < kernel.cols(); ++j) {
+    const Eigen::VectorXd aside = p + step * kernel.col(j);
+    std::vector<double> trial(aside.data(), aside.data() + n);
+    Eigen::MatrixXd there;
+    const double error = correct(problem, steps, 1e-3 * kTolerance, trial, there);
+    const Eigen::Map<const Eigen::VectorXd> reached(trial.data(), n);
+    if (error <= kTolerance && (reached - p).norm() > 0.5 * step) ++moved;
+  }
+  if (moved == kernel.cols()) return conjugate;
+  return moved == 0 ? std::optional<int>(0) : std::nullopt;
 }
 
 }  // namespace
+
+const ConjugateTimes& conjugate_times_of(const BoundaryValueProblem& problem, Extremal& extremal) {
+  if (!extremal.conjugate) {
+    extremal.conjugate.emplace();
+    if (problem.segment.holonomic == 0) {
+      const long steps = extremal.geodesic.plan.count / 2;
+      extremal.conjugate = conjugate_times(problem, extremal.knots, steps);
+    }
+  }
+  return *extremal.conjugate;
+}
 
 void complete(const BoundaryValueProblem& problem, long samples, Extremal& extremal) {
   Geodesic& geodesic = extremal.geodesic;
   const long steps = geodesic.plan.count;
   add_extremes(problem, extremal.knots, steps, geodesic);
   if (samples > 0) geodesic.trajectory = survey(problem, extremal.knots, steps, samples).trajectory;
-  if (geodesic.verification == Verification::kSingle) classify_singular(problem, geodesic);
-  // dq/dp0 is singular at all times.
-  if (geodesic.abnormal.value_or(false) || problem.segment.holonomic > 0) return;
-  const ConjugateTimes conjugate = conjugate_times(problem, extremal.knots, steps / 2);
+  const ConjugateTimes& conjugate = conjugate_times_of(problem, extremal);
+  if (conjugate.corank) geodesic.abnormal = *conjugate.corank > 0;
   if (!conjugate.known) return;
   geodesic.conjugate_times = conjugate.times;
-  const auto inner = std::count_if(
-      conjugate.times.begin(), conjugate.times.end(), [&](double t) { return t < problem.time; });
-  geodesic.morse_index = static_cast<int>(inner);
-  if (geodesic.label == Label::kSingular) return;
-  if (inner > 0) geodesic.label = Label::kConjugatePassed;
-  if (conjugate.times.empty()) geodesic.label = Label::kLocallyMinimal;
+  const auto inner = static_cast<int>(conjugate.times.size()) - conjugate.at_end;
+  geodesic.morse_index = inner;
+  geodesic.family_dimension = 0;
+  if (conjugate.at_end > 0) {
+    geodesic.family_dimension.reset();
+    if (geodesic.verification == Verification::kSingle) {
+      geodesic.family_dimension =
+          family_dimension(problem, geodesic, conjugate.at_end, *conjugate.corank);
+    }
+  }
+  if (geodesic.family_dimension.value_or(0) > 0) {
+    geodesic.label = Label::kSingular;
+  } else if (inner > 0) {
+    geodesic.label = Label::kConjugatePassed;
+  } else if (conjugate.times.empty()) {
+    geodesic.label = Label::kLocallyMinimal;
+  }
 }
 
 }  // namespace carnot

@@ -9,4 +9,8 @@ namespace carnot {
 // family dimension, as far as they can be known.
 void complete(const BoundaryValueProblem& problem, long samples, Extremal& extremal);
 
+// The conjugate times of the extremal, computed once. Unknown with holonomic constraints, where
+// momenta along the rows of Dh move nothing.
+const ConjugateTimes& conjugate_times_of(const BoundaryValueProblem& problem, Extremal& extremal);
+
 }  // namespace carnot

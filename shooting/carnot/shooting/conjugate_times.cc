@@ -1,49 +1,21 @@
 #include "carnot/shooting/conjugate_times.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/QR>
-#include <algorithm>
 #include <cmath>
-#include <complex>
 #include <numbers>
-#include <optional>
 #include <utility>
+
+#include "carnot/shooting/lagrangian_plane.h"
 
 namespace carnot {
 namespace {
 
-using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-// What W says of a plane.
-struct Phases {
-  MatrixXcd w;
-  double sum = 0;      // of the phases in [0, 2 pi)
-  double nearest = 0;  // smallest distance of an eigenvalue from 1
-};
-
-Phases phases_of(const MatrixXd& plane) {
-  const auto n = plane.cols();
-  const std::complex<double> i(0, 1);
-  const MatrixXcd x = plane.topRows(n).cast<std::complex<double>>();
-  const MatrixXcd p = plane.bottomRows(n).cast<std::complex<double>>();
-  Phases phases;
-  phases.w = (p + i * x) * (p - i * x).partialPivLu().inverse();
-  phases.nearest = 2;
-  const Eigen::ComplexEigenSolver<MatrixXcd> solver(phases.w, false);
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const std::complex<double> value = solver.eigenvalues()[j];
-    const double theta = std::arg(value);
-    phases.sum += theta < 0 ? theta + kTurn : theta;
-    phases.nearest = std::min(phases.nearest, std::abs(value - 1.0));
-  }
-  return phases;
-}
-
-// A phase point and the plane over it, orthonormal columns of (S^-1 X; S'P).
+// A phase point and the plane over it, in balanced coordinates (S^-1 X; S'P).
 struct Frame {
   double t = 0;
   std::vector<double> z;
@@ -52,24 +24,13 @@ struct Frame {
   Phases phases;
 };
 
-// Coordinates in which the plane before half way along the extremal is far from both axes: with
-// X P^-1 = V diag(a) V' there, S = V diag(|a|^(1/2)) V'. Without it all phases of a problem whose
-// directions move q by very different amounts would hide near zero.
-MatrixXd balance(const MatrixXd& x, const MatrixXd& p) {
-  constexpr double kSmallest = 1e-14;  // relative; smaller ones are round-off
-  const MatrixXd ratio = x * p.partialPivLu().inverse();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(0.5 * (ratio + ratio.transpose()));
-  Eigen::VectorXd root = solver.eigenvalues().cwiseAbs();
-  root = root.cwiseMax(kSmallest * root.maxCoeff()).cwiseSqrt();
-  return solver.eigenvectors() * root.asDiagonal() * solver.eigenvectors().transpose();
-}
-
 class Planes {
  public:
-  Planes(const Segment& segment, const MatrixXd& s)
+  Planes(const Segment& segment, const MatrixXd& s, int corank)
       : segment_(segment),
         s_(s),
         inverse_(s.inverse()),
+        corank_(corank),
         doubt_(kRoundOff * s_.norm() * inverse_.norm()) {}
 
   // The frame at time t, in as many steps of the method as det W needs to be followed. False when
@@ -82,12 +43,27 @@ class Planes {
            advance(middle, t, to, halvings - 1);
   }
 
-  // N at a frame, as a real number that is near an integer.
-  [[nodiscard]] static double count(const Frame& frame) {
-    return (frame.phi - frame.phases.sum) / kTurn;
+  // N at a frame, as a real number that is near an integer; phases nearer to zero than `tolerance`
+  // have not passed it.
+  [[nodiscard]] double count(const Frame& frame, double tolerance = 0) const {
+    double sum = 0;
+    for (Eigen::Index j = corank_; j < frame.phases.angles.size(); ++j) {
+      const double theta = frame.phases.angles[j];
+      sum += theta < tolerance ? theta + kTurn : theta;
+    }
+    return (frame.phi - sum) / kTurn;
+  }
+  // How many phases, but for those of the corank, are nearer to zero than `tolerance`.
+  [[nodiscard]] int near_zero(const Frame& frame, double tolerance) const {
+    int number = 0;
+    for (Eigen::Index j = corank_; j < frame.phases.angles.size(); ++j) {
+      if (std::abs(frame.phases.angles[j]) < tolerance) ++number;
+    }
+    return number;
   }
   // A phase so near to zero that round-off may have put it on the wrong side.
-  [[nodiscard]] bool ambiguous(const Frame& frame) const { return frame.phases.nearest < doubt_; }
+  [[nodiscard]] bool ambiguous(const Frame& frame) const { return near_zero(frame, doubt_) > 0; }
+  [[nodiscard]] double doubt() const { return doubt_; }
 
   // The time in (a.t, t] at which the count first exceeds `target`, by bisection.
   [[nodiscard]] double locate(const Frame& a, double t, double target) const {
@@ -106,7 +82,7 @@ class Planes {
  private:
   [[nodiscard]] bool step(const Frame& from, double t, Frame& to) const {
     const int n = segment_.dof;
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> m(2 * n, 2 * n);
+    RowMajor m(2 * n, 2 * n);
     to.t = t;
     to.z = from.z;
     const StepPlan plan = StepPlan::equal(from.t, t - from.t, 1);
@@ -117,11 +93,10 @@ class Planes {
     carried = m * carried;
     carried.topRows(n) = inverse_ * carried.topRows(n);
     carried.bottomRows(n) = s_ * carried.bottomRows(n);
-    const Eigen::HouseholderQR<MatrixXd> qr(carried);
-    to.plane = qr.householderQ() * MatrixXd::Identity(2 * n, n);
+    to.plane = orthonormal(carried);
     to.phases = phases_of(to.plane);
-    const std::complex<double> turned = (to.phases.w * from.phases.w.adjoint()).determinant();
-    to.phi = from.phi + std::arg(turned);
+    // det W = (det U)^2.
+    to.phi = from.phi + std::remainder(2 * (to.phases.turn - from.phases.turn), kTurn);
     return true;
   }
 
@@ -132,65 +107,91 @@ class Planes {
   const Segment& segment_;
   MatrixXd s_;
   MatrixXd inverse_;
+  int corank_;
   double doubt_;
 };
 
-// balance() somewhat before T/2, where symmetric extremals have nothing special.
-std::optional<MatrixXd> before_half(const BoundaryValueProblem& problem,
-                                    const Knots& knots,
-                                    long steps) {
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const int n = problem.segment.dof;
+Frame vertical(const Knots& knots) {
+  const int n = knots.dof;
+  Frame frame{0, {knots.at(0), knots.at(0) + 2 * n}, MatrixXd::Zero(2 * n, n), 0, {}};
+  frame.plane.bottomRows(n).setIdentity();
+  frame.phases = phases_of(frame.plane);
+  return frame;
+}
+
+// The graph somewhat before T/2, where symmetric extremals have nothing special, and the smallest
+// kernel of several.
+std::optional<Graph> graph_before_half(const BoundaryValueProblem& problem,
+                                       const Knots& knots,
+                                       long steps) {
   constexpr double kFraction = 0.43;
-  MatrixXd product = MatrixXd::Identity(2 * n, 2 * n);
-  const int last = knots.segments == 1 ? 1 : std::max(1, 3 * knots.segments / 8);
-  for (int i = 0; i < last; ++i) {
-    StepPlan plan = knot_plan(problem, knots.segments, i, steps);
-    if (knots.segments == 1) {
-      plan = StepPlan::equal(0, kFraction * problem.time, std::max(1L, plan.count / 2));
-    }
+  const int n = problem.segment.dof;
+  const int before_half = std::max(1, 3 * knots.segments / 8);
+  MatrixXd plane = vertical(knots).plane;
+  std::optional<Graph> graph;
+  for (int i = 0; i < before_half; ++i) {
     std::vector<double> z(knots.at(i), knots.at(i) + 2 * n);
-    RowMajor m(2 * n, 2 * n);
-    if (!problem.segment.tangent_flow(plan, z.data(), m.data()).completed()) return std::nullopt;
-    product = m * product;
+    const double start = problem.time * i / knots.segments;
+    const double end =
+        knots.segments == 1 ? kFraction * problem.time : problem.time * (i + 1) / knots.segments;
+    const long count = std::max(2L, steps / (2 * before_half));
+    for (long j = 0; j < count; ++j) {
+      const double h = (end - start) / static_cast<double>(count);
+      RowMajor m(2 * n, 2 * n);
+      const StepPlan plan = StepPlan::equal(start + static_cast<double>(j) * h, h, 1);
+      if (!problem.segment.tangent_flow(plan, z.data(), m.data()).completed()) return std::nullopt;
+      plane = orthonormal(m * plane);
+      const bool later_half = 2 * (i * count + j + 1) >= before_half * count;
+      if (!later_half) continue;
+      Graph next = graph_of(plane);
+      if (!next.balance.allFinite()) continue;
+      // A conjugate time by chance shows a kernel only there.
+      if (!graph || next.kernel <= graph->kernel) graph = std::move(next);
+    }
   }
-  const MatrixXd s = balance(product.topRightCorner(n, n), product.bottomRightCorner(n, n));
-  if (!s.allFinite()) return std::nullopt;
-  return s;
+  return graph;
 }
 
 // One pass at a given number of steps.
 ConjugateTimes follow(const BoundaryValueProblem& problem, const Knots& knots, long steps) {
+  constexpr double kAtEnd = 1e-8;  // a phase this near to zero at T: T is conjugate
   const int n = problem.segment.dof;
-  Frame frame{0, {knots.at(0), knots.at(0) + 2 * n}, MatrixXd::Zero(2 * n, n), 0, {}};
-  frame.plane.bottomRows(n).setIdentity();
-  frame.phases = phases_of(frame.plane);
-  const std::optional<MatrixXd> s = before_half(problem, knots, steps);
-  if (!s) return {};
-  const Planes planes(problem.segment, *s);
-  Frame clear = frame;  // the last frame whose count is beyond doubt
   ConjugateTimes result;
+  const std::optional<Graph> graph = graph_before_half(problem, knots, steps);
+  if (!graph) return result;
+  result.corank = graph->kernel;
+  if (graph->kernel == n) return result;
+  const Planes planes(problem.segment, graph->balance, graph->kernel);
+  Frame frame = vertical(knots);
+  Frame clear = frame;  // the last frame whose count is beyond doubt
   int counted = 0;
+  const auto count_to = [&](int count, const Frame& until) {
+    for (; counted < count; ++counted) {
+      result.times.push_back(planes.locate(clear, until.t, counted));
+    }
+    return count == counted;
+  };
   const long per_segment = std::max(1L, (steps + knots.segments - 1) / knots.segments);
   for (long i = 1; i <= per_segment * knots.segments; ++i) {
     const double t =
         problem.time * static_cast<double>(i) / static_cast<double>(per_segment * knots.segments);
     Frame next;
-    if (!planes.advance(frame, t, next)) return {};
+    if (!planes.advance(frame, t, next)) return result;
     if (i % per_segment == 0) {
       const double* knot = knots.at(static_cast<int>(i / per_segment));
       next.z.assign(knot, knot + 2 * n);
     }
     frame = next;
-    if (planes.ambiguous(frame)) continue;
-    const int count = static_cast<int>(std::lround(Planes::count(frame)));
-    for (; counted < count; ++counted) {
-      result.times.push_back(planes.locate(clear, frame.t, counted));
-    }
-    if (count < counted) return {};
+    if (i == per_segment * knots.segments || planes.ambiguous(frame)) continue;
+    if (!count_to(static_cast<int>(std::lround(planes.count(frame))), frame)) return result;
     clear = frame;
   }
-  if (clear.t != frame.t) return {};
+  if (planes.doubt() > kAtEnd) return result;
+  result.at_end = planes.near_zero(frame, kAtEnd);
+  const double tolerance = result.at_end > 0 ? kAtEnd : 0;
+  if (!count_to(static_cast<int>(std::lround(planes.count(frame, tolerance))), frame))
+    return result;
+  result.times.insert(result.times.end(), result.at_end, problem.time);
   result.known = true;
   return result;
 }
@@ -206,10 +207,15 @@ ConjugateTimes conjugate_times(const BoundaryValueProblem& problem,
   for (int i = 0; i < kDoublings; ++i) {
     steps *= 2;
     ConjugateTimes fine = follow(problem, knots, steps);
-    if (coarse.known && fine.known && coarse.times.size() == fine.times.size()) return fine;
+    if (coarse.known && fine.known && coarse.times.size() == fine.times.size() &&
+        coarse.corank == fine.corank) {
+      return fine;
+    }
     coarse = std::move(fine);
   }
-  return {};
+  coarse.known = false;
+  coarse.times.clear();
+  return coarse;
 }
 
 }  // namespace carnot

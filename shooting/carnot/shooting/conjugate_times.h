@@ -1,19 +1,20 @@
 // Conjugate times of an extremal, with multiplicity.
 //
 // The columns of (X, P) = (dq(t)/dp0, dp(t)/dp0) span a Lagrangian plane that starts at X = 0; t is
-// conjugate when X is singular again. The unitary matrix W = (P + iX)(P - iX)^-1 depends on the
-// plane only and has the eigenvalue 1 as often as X has a kernel. Its eigenvalues pass through 1 in
-// one direction only, upwards, since H_pp >= 0. So with Phi the continuous argument of det W and
-// theta_j in [0, 2 pi) the phases of the eigenvalues,
+// conjugate when the rank of X drops below its generic one. The phases theta_j of the plane
+// (lagrangian_plane.h) pass through 0 in one direction only, upwards, since H_pp >= 0. So with Phi
+// the continuous argument of det W = exp(i sum_j theta_j) and the theta_j in [0, 2 pi),
 //
 //   N(t) = (Phi(t) - sum_j theta_j(t)) / (2 pi)
 //
 // counts the conjugate times in (0, t), even multiplicities too, where the sign of det X does not.
-// The plane is carried from step to step by the tangent flow and made orthonormal again each time,
-// so growth of the tangents costs no digits. Source: Arnold, Mathematical Methods of Classical
-// Mechanics, appendix 11 (Maslov index).
+// On an abnormal extremal as many phases as its corank stay at 0 and are left out. The plane is
+// carried from step to step by the tangent flow and made orthonormal again each time, so growth of
+// the tangents costs no digits. Source: Arnold, Mathematical Methods of Classical Mechanics,
+// appendix 11 (Maslov index).
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "carnot/shooting/boundary_value_problem.h"
@@ -22,8 +23,10 @@
 namespace carnot {
 
 struct ConjugateTimes {
-  bool known = false;         // false where round-off hides the count, as on abnormal extremals
+  bool known = false;         // false where round-off hides the count
   std::vector<double> times;  // in (0, T], ascending, repeated by multiplicity
+  int at_end = 0;             // how many of them are T
+  std::optional<int> corank;  // n - the generic rank of X; > 0: abnormal
 };
 
 // Along the extremal through `knots`; `steps` of the method over the whole time.

@@ -17,17 +17,11 @@ double largest_difference(const double* a, const double* b, int count) {
   return largest;
 }
 
-int nullity(const Eigen::MatrixXd& x) {
-  constexpr double kSingular = 1e-10;
-  const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(x).singularValues();
-  return static_cast<int>((values.array() <= kSingular * values[0]).count());
-}
-
-std::optional<Eigen::MatrixXd> end_point_jacobian(const BoundaryValueProblem& problem,
-                                                  const std::vector<double>& p0,
-                                                  double t,
-                                                  long steps,
-                                                  std::vector<double>& z) {
+std::optional<Eigen::MatrixXd> end_point_tangent(const BoundaryValueProblem& problem,
+                                                 const std::vector<double>& p0,
+                                                 double t,
+                                                 long steps,
+                                                 std::vector<double>& z) {
   const int n = problem.segment.dof;
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> m(2 * n, 2 * n);
   z = problem.from;
@@ -35,14 +29,31 @@ std::optional<Eigen::MatrixXd> end_point_jacobian(const BoundaryValueProblem& pr
   const StepPlan plan = StepPlan::equal(0, t, steps);
   if (!problem.segment.tangent_flow(plan, z.data(), m.data()).completed()) return std::nullopt;
   if (!m.allFinite()) return std::nullopt;
-  return Eigen::MatrixXd(m.topRightCorner(n, n));
+  return Eigen::MatrixXd(m.rightCols(n));
+}
+
+Eigen::MatrixXd kernel_of(const Eigen::MatrixXd& tangent, double tolerance) {
+  const auto n = tangent.cols();
+  const double q_size = tangent.topRows(n).norm();
+  const double p_size = tangent.bottomRows(n).norm();
+  Eigen::MatrixXd columns = tangent;
+  if (q_size > 0 && p_size > 0) columns.topRows(n) *= p_size / q_size;
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns);
+  const Eigen::MatrixXd plane = qr.householderQ() * Eigen::MatrixXd::Identity(2 * n, n);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(plane.topRows(n), Eigen::ComputeFullV);
+  const auto nullity = (svd.singularValues().array() <= tolerance).count();
+  const Eigen::MatrixXd kernel = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>().solve(
+      svd.matrixV().rightCols(nullity));
+  if (nullity == 0) return kernel;
+  return Eigen::HouseholderQR<Eigen::MatrixXd>(kernel).householderQ() *
+         Eigen::MatrixXd::Identity(n, nullity);
 }
 
 double correct(const BoundaryValueProblem& problem,
                long steps,
                double tolerance,
                std::vector<double>& p0,
-               Eigen::MatrixXd& jacobian) {
+               Eigen::MatrixXd& tangent) {
   constexpr int kMaxIterations = 6;
   constexpr double kRankThreshold = 1e-13;
   const int n = problem.segment.dof;
@@ -50,20 +61,20 @@ double correct(const BoundaryValueProblem& problem,
   std::vector<double> trial = p0;
   std::vector<double> z;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-    const auto at_trial = end_point_jacobian(problem, trial, problem.time, steps, z);
+    const auto at_trial = end_point_tangent(problem, trial, problem.time, steps, z);
     if (!at_trial) break;
     const double error = largest_difference(z.data(), problem.to.data(), n);
     if (!(error < best)) break;
     const bool gained = error < 0.5 * best;
     best = error;
     p0 = trial;
-    jacobian = *at_trial;
+    tangent = *at_trial;
     if (!gained || error <= tolerance) break;
     Eigen::VectorXd residual(n);
     for (int j = 0; j < n; ++j) residual[j] = z[j] - problem.to[j];
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> inverse;
     inverse.setThreshold(kRankThreshold);
-    inverse.compute(jacobian);
+    inverse.compute(tangent.topRows(n));
     const Eigen::VectorXd step = inverse.solve(residual);
     for (int j = 0; j < n; ++j) trial[j] = p0[j] - step[j];
   }
@@ -74,16 +85,31 @@ void reduce(const BoundaryValueProblem& problem,
             long steps,
             double tolerance,
             std::vector<double>& p0,
-            Eigen::MatrixXd& jacobian) {
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(jacobian, Eigen::ComputeFullV);
-  const Eigen::MatrixXd kernel = svd.matrixV().rightCols(nullity(jacobian));
+            Eigen::MatrixXd& tangent) {
+  constexpr double kGenerous = 1e-4;
+  constexpr double kSamePath = 1e-4;  // of its extent, where it is at a time without symmetry
+  constexpr double kOnTheWay = 0.43;
+  const Eigen::MatrixXd kernel = kernel_of(tangent, kGenerous);
+  if (kernel.cols() == 0) return;
   const Eigen::Map<const Eigen::VectorXd> p(p0.data(), static_cast<Eigen::Index>(p0.size()));
   const Eigen::VectorXd least = p - kernel * (kernel.transpose() * p);
   std::vector<double> trial(least.data(), least.data() + least.size());
-  Eigen::MatrixXd there = jacobian;
+  Eigen::MatrixXd there = tangent;
   if (!(correct(problem, steps, 1e-3 * tolerance, trial, there) <= tolerance)) return;
+  const auto on_the_way = [&](const std::vector<double>& momentum) {
+    std::vector<double> z = problem.from;
+    z.insert(z.end(), momentum.begin(), momentum.end());
+    const StepPlan plan = StepPlan::equal(0, kOnTheWay * problem.time, steps);
+    (void)problem.segment.flow(plan, z.data());
+    return z;
+  };
+  const std::vector<double> before = on_the_way(p0);
+  const std::vector<double> after = on_the_way(trial);
+  const int n = problem.segment.dof;
+  const double extent = largest_difference(before.data(), problem.from.data(), n);
+  if (!(largest_difference(before.data(), after.data(), n) <= kSamePath * extent)) return;
   p0 = trial;
-  jacobian = there;
+  tangent = there;
 }
 
 }  // namespace carnot

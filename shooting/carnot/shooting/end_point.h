@@ -12,32 +12,35 @@ namespace carnot {
 // max |a_j - b_j|; NaN when one is not a number.
 double largest_difference(const double* a, const double* b, int count);
 
-// How many directions of p0 do not move q(t), by the singular values of dq(t)/dp0. Where one run
-// can be verified, 1e-10 is far above round-off and far below what regular problems show (1e-6).
-int nullity(const Eigen::MatrixXd& x);
+// The columns (dq(t)/dp0; dp(t)/dp0), 2n x n, along the extremal from p0; z(t) in `z`. Nothing when
+// the flow fails.
+std::optional<Eigen::MatrixXd> end_point_tangent(const BoundaryValueProblem& problem,
+                                                 const std::vector<double>& p0,
+                                                 double t,
+                                                 long steps,
+                                                 std::vector<double>& z);
 
-// dq(t)/dp0 along the extremal from p0; z(t) in `z`. Nothing when the flow fails.
-std::optional<Eigen::MatrixXd> end_point_jacobian(const BoundaryValueProblem& problem,
-                                                  const std::vector<double>& p0,
-                                                  double t,
-                                                  long steps,
-                                                  std::vector<double>& z);
+// An orthonormal basis of the directions of p0 that do not move q(t), n x nullity: where the plane
+// that the columns span is within an angle `tolerance` of the vertical. Growth of the columns,
+// which makes dq(t)/dp0 look singular, does not matter.
+Eigen::MatrixXd kernel_of(const Eigen::MatrixXd& tangent, double tolerance = 1e-9);
 
 // Newton's method on q(T) = to, to the tolerance or as far as it goes; steps of least norm where
-// the Jacobian is singular. Returns the end point error that p0 reaches, and the Jacobian there.
+// the Jacobian is singular. Returns the end point error that p0 reaches, and the tangent there.
 double correct(const BoundaryValueProblem& problem,
                long steps,
                double tolerance,
                std::vector<double>& p0,
-               Eigen::MatrixXd& jacobian);
+               Eigen::MatrixXd& tangent);
 
-// Where directions of p0 do not move the end point, the member of least norm, if it is one: on an
-// abnormal extremal any multiple of the abnormal covector may be added. Newton's steps have least
-// norm themselves, so this changes nothing else.
+// Where directions of p0 do not move the end point, the member of least norm, if it is the same
+// path: on an abnormal extremal any multiple of the abnormal covector may be added. Where two such
+// directions meet Newton's method converges slowly and its last steps are along them; so they are
+// looked for with a generous tolerance.
 void reduce(const BoundaryValueProblem& problem,
             long steps,
             double tolerance,
             std::vector<double>& p0,
-            Eigen::MatrixXd& jacobian);
+            Eigen::MatrixXd& tangent);
 
 }  // namespace carnot

@@ -132,6 +132,7 @@ ceres::Solver::Options inner_options(const RelaxationOptions& options) {
   inner.function_tolerance = 1e-4;
   inner.gradient_tolerance = 1e-8;
   inner.parameter_tolerance = 1e-6;
+  inner.initial_trust_region_radius = 1 / options.caution;
   inner.num_threads = 1;
   inner.logging_type = ceres::SILENT;
   return inner;

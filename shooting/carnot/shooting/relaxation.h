@@ -20,6 +20,7 @@ struct RelaxationOptions {
   int outer_iterations = 8;   // updates of the multipliers
   int inner_iterations = 12;  // Ceres iterations between two of them
   double penalty = 10;        // rho relative to the mass
+  double caution = 1e-4;      // first damping: larger keeps to the valley where the path starts
   double feasibility = 1e-3;  // |G v| / |v| at which to stop
 };
 

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "carnot/shooting/classification.h"
 #include "carnot/shooting/discrete_newton.h"
 #include "carnot/shooting/momentum_starts.h"
 #include "carnot/shooting/polish.h"
@@ -18,7 +19,9 @@ namespace {
 constexpr int kSegments = 8;      // of multiple shooting; divides the intervals of a path
 constexpr long kFirstSteps = 32;  // of the method over [0, T]
 constexpr int kRound = 8;         // starts between two looks at the list
-constexpr int kMaxStarts = 96;    // when the best extremal keeps changing
+constexpr int kMinStarts = 16;
+constexpr int kMaxStarts = 96;   // when the best extremal keeps changing
+constexpr int kMaxDescents = 4;  // sweeps below an extremal that is no minimum
 constexpr int kMaxStartsAll = 240;
 constexpr int kSweeps = 24;            // rounds of near hits, where more than the best is wanted
 constexpr int kEnoughHits = 3;         // of the least action, before a search for it ends
@@ -34,11 +37,17 @@ bool Search::run() {
   const bool by_paths = problem_.segment.has_transcription();
   const int sweeps = by_paths && wants_more() && options_.starts == 0 ? kSweeps : 0;
   const auto goes_on = [&](double share) { return !options_.progress || options_.progress(share); };
+  int descents = 0;
   while (starts_ < limit && !settled()) {
     const double share = static_cast<double>(starts_) / limit;
     if (!goes_on(sweeps > 0 ? 0.5 * share : share)) return false;
     const int count = std::min(kRound, limit - starts_);
-    by_paths ? relax_round(count) : momentum_round(count);
+    if (by_paths && descends_ && starts_ >= kMinStarts && descents < kMaxDescents) {
+      sweep_round(descents++);
+      limit += kRound;
+    } else {
+      by_paths ? relax_round(count) : momentum_round(count);
+    }
   }
   for (int round = 0; round < sweeps && lacks() && !extremals_.empty(); ++round) {
     if (!goes_on(0.5 + 0.5 * round / sweeps)) return false;
@@ -86,10 +95,20 @@ bool Search::lacks() const {
   return options_.all || static_cast<int>(extremals_.size()) < options_.count;
 }
 
-bool Search::settled() const {
-  if (options_.starts > 0 || wants_more() || extremals_.empty()) return false;
-  double least = std::numeric_limits<double>::infinity();
-  for (const Extremal& extremal : extremals_) least = std::min(least, extremal.geodesic.action);
+std::size_t Search::best() const {
+  const auto least = std::min_element(
+      extremals_.begin(), extremals_.end(), [](const Extremal& a, const Extremal& b) {
+        return a.geodesic.action < b.geodesic.action;
+      });
+  return static_cast<std::size_t>(least - extremals_.begin());
+}
+
+bool Search::settled() {
+  if (options_.starts > 0 || extremals_.empty()) return false;
+  const ConjugateTimes& conjugate = conjugate_times_of(problem_, extremals_[best()]);
+  descends_ = conjugate.known && conjugate.times.size() > std::size_t(conjugate.at_end);
+  if (wants_more() || descends_ || starts_ < kMinStarts) return false;
+  const double least = extremals_[best()].geodesic.action;
   int hits = 0;
   int rivals = 0;
   for (std::size_t i = 0; i < extremals_.size(); ++i) {
@@ -148,7 +167,7 @@ void Search::sweep_round(int round) {
     const double speed = length / problem_.time;
     return 0.5 * speed * speed;
   };
-  sweep.lowest = energy(0.9 * shortest);
+  sweep.lowest = energy(0.8 * shortest);
   sweep.highest = energy(longest);
   std::vector<Path> paths = near_hits(problem_, sweep, threads_);
   std::vector<Candidate> candidates(paths.size());

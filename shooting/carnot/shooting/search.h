@@ -48,8 +48,9 @@ class Search {
   // Fewer extremals than asked for.
   [[nodiscard]] bool lacks() const;
   // The search for one geodesic ends when the least action has been hit often enough, and the more
-  // often the more rivals it has; a search for more goes on to the limit.
-  [[nodiscard]] bool settled() const;
+  // often the more rivals it has; not while the best extremal is past a conjugate time, since then
+  // a nearby path is better. A search for more goes on to the limit.
+  [[nodiscard]] bool settled();
   void relax_round(int count);
   // The same from momenta, where there is no transcription.
   void momentum_round(int count);
@@ -58,6 +59,7 @@ class Search {
   // Polishes what is new among the candidates and adds it to the list.
   void absorb(const std::vector<Candidate>& candidates);
   [[nodiscard]] Candidate relax_start(int i) const;
+  [[nodiscard]] std::size_t best() const;
   // Adds what is new, and its mirror partners. Returns the index in the list, or -1.
   int add(const std::optional<Extremal>& extremal);
   // Index of a discrete extremal with the same nodes, or with those of its mirror partner, which
@@ -74,6 +76,7 @@ class Search {
   std::vector<ProblemSymmetry> symmetries_;
   std::vector<Extremal> extremals_;
   std::vector<int> hits_;
+  bool descends_ = false;          // the best extremal so far is no minimum
   std::vector<Path> discrete_;     // discrete extremals seen,
   std::vector<int> extremal_of_;   // the extremal each became, kNone or kPending,
   std::vector<int> pending_hits_;  // and how often it was seen before that was known

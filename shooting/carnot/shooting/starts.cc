@@ -62,6 +62,7 @@ std::vector<double> amplitudes(int n, std::uint64_t seed, int i) {
   std::seed_seq sequence{seed, seed >> 32U, static_cast<std::uint64_t>(i)};
   std::mt19937_64 random(sequence);
   std::normal_distribution<double> normal;
+  if (i == 0) return a;  // the straight line itself
   const int pairs = n * (n - 1) / 2;
   const int number = i / 4;  // of the designed start, were it one
   if (i % 4 == 3 && number < 4 * pairs) {
@@ -123,6 +124,7 @@ Start make_start(const BoundaryValueProblem& problem, std::uint64_t seed, int i)
   // constraints, costs about half the action of a path of that unit. Less, and it collapses.
   const double collapse = scales.violation > 0 ? unit / scales.violation : 1;
   const double penalty = 10 * std::max(1.0, collapse * collapse) * kPenalties[i / 9 % 3];
+  start.relaxation.caution = i % 2 == 0 ? 1e-4 : 1e-2;
   start.relaxation.penalty = std::min(penalty, kMaxPenalty);
   start.relaxation.outer_iterations = penalty > kStiff ? kOuterStiff : kOuter[i / 9 % 3];
   return start;

@@ -1,11 +1,11 @@
 // Paths to start a relaxation from.
 //
-// Straight line plus a wiggle, sum_m a_m sin(m pi s) in every coordinate. Every fourth start
-// is designed while there are any left: the first mode in one coordinate, the second in another,
-// each with either sign. Such a path encloses area in the plane of the two, which is how brackets
-// of the admissible directions are made; a change of sign is its mirror image. The rest are random
-// combinations, each from its own generator, so that start i is the same whatever else is computed.
-// Nothing depends on where the origin is.
+// The straight line, then straight lines plus a wiggle, sum_m a_m sin(m pi s) in every coordinate.
+// Every fourth start is designed while there are any left: the first mode in one coordinate, the
+// second in another, each with either sign. Such a path encloses area in the plane of the two,
+// which is how brackets of the admissible directions are made; a change of sign is its mirror
+// image. The rest are random combinations, each from its own generator, so that start i is the same
+// whatever else is computed. Nothing depends on where the origin is.
 //
 // Scale: with D the length of the straight line in the metric M and S the length of one radian,
 // the wiggle has size S (D/S)^e, e = 1/3, 1/2, 1 in turn: a displacement of size D that needs

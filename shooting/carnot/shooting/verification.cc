@@ -79,12 +79,12 @@ std::optional<Extremal> verify(const BoundaryValueProblem& problem,
   Extremal extremal;
   Geodesic& geodesic = extremal.geodesic;
   std::vector<double> p0 = knots.p0();
-  Eigen::MatrixXd jacobian;
+  Eigen::MatrixXd tangent;
   double error = std::numeric_limits<double>::infinity();
-  if (correct(problem, steps, 1e-3 * tolerance, p0, jacobian) <= tolerance) {
+  if (correct(problem, steps, 1e-3 * tolerance, p0, tangent) <= tolerance) {
     // Holonomic constraints: p along the rows of Dh moves nothing.
-    extremal.singular = nullity(jacobian) > problem.segment.holonomic;
-    if (extremal.singular) reduce(problem, steps, tolerance, p0, jacobian);
+    reduce(problem, steps, tolerance, p0, tangent);
+    extremal.singular = kernel_of(tangent).cols() > problem.segment.holonomic;
     if (problem.segment.holonomic > 0) project(problem, p0);
     extremal.knots = knots_of(problem, p0, 1, tighter);
     error = largest_difference(extremal.knots.at(1), problem.to.data(), problem.segment.dof);

@@ -8,6 +8,7 @@
 
 #include <optional>
 
+#include "carnot/shooting/conjugate_times.h"
 #include "carnot/shooting/geodesic.h"
 #include "carnot/shooting/knots.h"
 
@@ -19,6 +20,7 @@ struct Extremal {
   Knots knots;
   std::vector<std::vector<double>> path;
   bool singular = false;  // dq(T)/dp0 is singular: a member of a family, or abnormal
+  std::optional<ConjugateTimes> conjugate;  // where they have been asked for
 };
 
 // Nothing when neither check succeeds. `steps` is where the search for a step begins.

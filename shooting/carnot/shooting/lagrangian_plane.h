@@ -1,0 +1,32 @@
+// Lagrangian planes and their phases.
+//
+// The columns of (X, P) = (dq(t)/dp0, dp(t)/dp0) span a Lagrangian plane. With an orthonormal basis
+// U = P + iX is unitary, and W = U U' depends on the plane only; its eigenvalues exp(i theta_j) are
+// 1 as often as X has a kernel. Re W = PP' - XX' and Im W = PX' + XP' are symmetric and commute, so
+// the eigenvectors of a general combination belong to both.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace carnot {
+
+struct Phases {
+  Eigen::VectorXd angles;  // theta_j in (-pi, pi], smallest |theta_j| first
+  double turn = 0;         // arg det U, up to a multiple of pi
+};
+
+// `plane` is 2n x n with orthonormal columns.
+Phases phases_of(const Eigen::MatrixXd& plane);
+
+// An orthonormal basis of the plane that the columns span.
+Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns);
+
+// What X P^-1, a symmetric matrix, says of a plane.
+struct Graph {
+  int kernel = 0;           // dimension of the kernel of X, up to round-off
+  Eigen::MatrixXd balance;  // S: in coordinates S^-1 q, S'p all angles of the plane are moderate
+};
+
+Graph graph_of(const Eigen::MatrixXd& plane);
+
+}  // namespace carnot

@@ -1,0 +1,67 @@
+// Discrete extremals on finer grids: order of the extrapolation, artefacts.
+#include "carnot/shooting/refinement.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "carnot/shooting/discrete_newton.h"
+#include "carnot/shooting/relaxation.h"
+#include "carnot/shooting/starts.h"
+#include "shooting/problems.h"
+
+namespace carnot {
+namespace {
+
+Path tight(const BoundaryValueProblem& problem) {
+  Start start = make_start(problem, 0, 2);
+  relax(problem, start.relaxation, start.path);
+  EXPECT_TRUE(tighten(problem, {}, start.path).converged);
+  return start.path;
+}
+
+TEST(Refinement, HalvingKeepsCubics) {
+  Path path;
+  path.intervals = 8;
+  path.dof = 1;
+  const auto cubic = [](double s) { return 1 + s * (2 - s * (3 - 4 * s)); };
+  for (int i = 0; i <= 8; ++i) path.q.push_back(cubic(i / 8.0));
+  for (int i = 0; i < 8; ++i) path.lambda.push_back(1 + 2 * (i + 0.5) / 8);
+  const Path fine = halved(path);
+  ASSERT_EQ(fine.intervals, 16);
+  constexpr double kRoundOff = 1e-14;
+  for (int i = 0; i <= 16; ++i) EXPECT_NEAR(fine.q[i], cubic(i / 16.0), kRoundOff);
+  for (int i = 0; i < 16; ++i) EXPECT_NEAR(fine.lambda[i], 1 + 2 * (i + 0.5) / 16, kRoundOff);
+}
+
+TEST(Refinement, ChangesFallByFour) {
+  const BoundaryValueProblem problem = test::sideways();
+  const Path coarse = tight(problem);
+  double last = 0;
+  for (const int intervals : {128, 256, 512}) {
+    RefinementOptions options;
+    options.enough = 0;
+    options.max_intervals = intervals;
+    const Refinement refined = refine(problem, options, coarse);
+    ASSERT_TRUE(refined.found);
+    EXPECT_EQ(refined.intervals, intervals);
+    EXPECT_EQ(refined.path.intervals, intervals / 2);
+    if (last > 0) {
+      EXPECT_NEAR(last / refined.change, 4, 0.2);  // 4 + O(h^2)
+    }
+    last = refined.change;
+  }
+}
+
+// p(0) of the extrapolated path is that of the extremal, to the fourth order.
+TEST(Refinement, ExtrapolationIsOfFourthOrder) {
+  const BoundaryValueProblem problem = test::straight_ahead();
+  RefinementOptions options;
+  options.enough = 1e-2;
+  const Refinement refined = refine(problem, options, tight(problem));
+  ASSERT_TRUE(refined.settled);
+  EXPECT_NEAR(refined.path.momentum(0)[0], 1, 1e-9);
+}
+
+}  // namespace
+}  // namespace carnot
