@@ -164,6 +164,29 @@ TEST(Geodesic, StiffVehiclesAreSolved) {
   EXPECT_EQ(ahead.geodesics[0].label, Label::kLocallyMinimal);
 }
 
+// Sideways by e costs e^(2/3): three brackets deep. The Engel group is the limit.
+TEST(Geodesic, TinyDisplacementsNeedNoOptions) {
+  const auto action = [](double e) {
+    const GeodesicReport report = find(test::vehicle({0, 0, 0, 0}, {0, e, 0, 0}));
+    EXPECT_EQ(report.status, GeodesicStatus::kConverged) << report.message;
+    return report.geodesics.empty() ? 0 : report.geodesics[0].action;
+  };
+  // The next term of the expansion is a path length, 0.06, smaller; measured 2e-5.
+  EXPECT_NEAR(action(1e-6) / action(1e-9), 100, 0.02);
+}
+
+TEST(Geodesic, TheOriginDoesNotMatter) {
+  const double x = 4.5e9;
+  const double y = -3.5e8;
+  const GeodesicReport here = find(test::sideways());
+  const GeodesicReport there = find(test::vehicle({x, y, 0, 0}, {x, y + 1, 0, 0}));
+  ASSERT_EQ(there.status, GeodesicStatus::kConverged) << there.message;
+  EXPECT_EQ(there.geodesics[0].p0, here.geodesics[0].p0);
+  EXPECT_EQ(there.geodesics[0].trajectory.q.front()[0], x);
+  EXPECT_EQ(there.geodesics[0].trajectory.q.back()[1],
+            y + here.geodesics[0].trajectory.q.back()[1]);
+}
+
 TEST(Geodesic, TimeScalesTheAction) {
   const BoundaryValueProblem slow = test::vehicle({0, 0, 0, 0}, {2, 1, 0.5, 0.5}, 10);
   const BoundaryValueProblem quick = test::vehicle({0, 0, 0, 0}, {2, 1, 0.5, 0.5}, 0.1);

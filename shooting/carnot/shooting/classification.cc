@@ -10,6 +10,17 @@
 namespace carnot {
 namespace {
 
+// How well the phases at T are known: p0 is as good as the end point error relative to the
+// distance.
+double doubt_of(const BoundaryValueProblem& problem, const Geodesic& geodesic) {
+  constexpr double kLeast = 1e-8;
+  constexpr double kMargin = 100;
+  if (geodesic.verification == Verification::kKnots) return kLeast;
+  const double distance = largest_difference(
+      problem.from.data(), problem.to.data(), static_cast<int>(problem.from.size()));
+  return distance > 0 ? std::max(kLeast, kMargin * geodesic.endpoint_error / distance) : kLeast;
+}
+
 // The largest |value(q)| along the path: at the nodes, and of the parabola through the best three.
 void add_extremes(const BoundaryValueProblem& problem,
                   const Knots& knots,
@@ -69,7 +80,8 @@ const ConjugateTimes& conjugate_times_of(const BoundaryValueProblem& problem, Ex
     extremal.conjugate.emplace();
     if (problem.segment.holonomic == 0) {
       const long steps = extremal.geodesic.plan.count / 2;
-      extremal.conjugate = conjugate_times(problem, extremal.knots, steps);
+      extremal.conjugate =
+          conjugate_times(problem, extremal.knots, steps, doubt_of(problem, extremal.geodesic));
     }
   }
   return *extremal.conjugate;

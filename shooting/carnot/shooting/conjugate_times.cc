@@ -153,8 +153,10 @@ std::optional<Graph> graph_before_half(const BoundaryValueProblem& problem,
 }
 
 // One pass at a given number of steps.
-ConjugateTimes follow(const BoundaryValueProblem& problem, const Knots& knots, long steps) {
-  constexpr double kAtEnd = 1e-8;  // a phase this near to zero at T: T is conjugate
+ConjugateTimes follow(const BoundaryValueProblem& problem,
+                      const Knots& knots,
+                      long steps,
+                      double doubt) {
   const int n = problem.segment.dof;
   ConjugateTimes result;
   const std::optional<Graph> graph = graph_before_half(problem, knots, steps);
@@ -186,9 +188,9 @@ ConjugateTimes follow(const BoundaryValueProblem& problem, const Knots& knots, l
     if (!count_to(static_cast<int>(std::lround(planes.count(frame))), frame)) return result;
     clear = frame;
   }
-  if (planes.doubt() > kAtEnd) return result;
-  result.at_end = planes.near_zero(frame, kAtEnd);
-  const double tolerance = result.at_end > 0 ? kAtEnd : 0;
+  if (planes.doubt() > doubt) return result;
+  result.at_end = planes.near_zero(frame, doubt);
+  const double tolerance = result.at_end > 0 ? doubt : 0;
   if (!count_to(static_cast<int>(std::lround(planes.count(frame, tolerance))), frame))
     return result;
   result.times.insert(result.times.end(), result.at_end, problem.time);
@@ -200,13 +202,14 @@ ConjugateTimes follow(const BoundaryValueProblem& problem, const Knots& knots, l
 
 ConjugateTimes conjugate_times(const BoundaryValueProblem& problem,
                                const Knots& knots,
-                               long steps) {
+                               long steps,
+                               double doubt) {
   // A phase that makes a whole turn within one step goes unseen: two passes must agree.
   constexpr int kDoublings = 4;
-  ConjugateTimes coarse = follow(problem, knots, steps);
+  ConjugateTimes coarse = follow(problem, knots, steps, doubt);
   for (int i = 0; i < kDoublings; ++i) {
     steps *= 2;
-    ConjugateTimes fine = follow(problem, knots, steps);
+    ConjugateTimes fine = follow(problem, knots, steps, doubt);
     if (coarse.known && fine.known && coarse.times.size() == fine.times.size() &&
         coarse.corank == fine.corank) {
       return fine;

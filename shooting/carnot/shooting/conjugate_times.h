@@ -29,7 +29,11 @@ struct ConjugateTimes {
   std::optional<int> corank;  // n - the generic rank of X; > 0: abnormal
 };
 
-// Along the extremal through `knots`; `steps` of the method over the whole time.
-ConjugateTimes conjugate_times(const BoundaryValueProblem& problem, const Knots& knots, long steps);
+// Along the extremal through `knots`; `steps` of the method over the whole time. A phase nearer to
+// zero than `doubt` at T counts as zero there: as well as the extremal is known, T is conjugate.
+ConjugateTimes conjugate_times(const BoundaryValueProblem& problem,
+                               const Knots& knots,
+                               long steps,
+                               double doubt = 1e-8);
 
 }  // namespace carnot

@@ -95,7 +95,8 @@ void reduce(const BoundaryValueProblem& problem,
   const Eigen::VectorXd least = p - kernel * (kernel.transpose() * p);
   std::vector<double> trial(least.data(), least.data() + least.size());
   Eigen::MatrixXd there = tangent;
-  if (!(correct(problem, steps, 1e-3 * tolerance, trial, there) <= tolerance)) return;
+  constexpr double kSlack = 100;
+  if (!(correct(problem, steps, tolerance, trial, there) <= kSlack * tolerance)) return;
   const auto on_the_way = [&](const std::vector<double>& momentum) {
     std::vector<double> z = problem.from;
     z.insert(z.end(), momentum.begin(), momentum.end());

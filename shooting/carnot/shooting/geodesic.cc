@@ -15,6 +15,28 @@ namespace {
 
 constexpr long kFewSteps = 32;  // of the path that does not move
 
+// Translations of the plane are symmetries of the scene: the same problem with `from` at the
+// origin, where coordinates cost no digits.
+BoundaryValueProblem at_origin(const BoundaryValueProblem& problem) {
+  BoundaryValueProblem moved = problem;
+  const Symmetries& symmetries = problem.segment.info.symmetries;
+  for (const int j : {symmetries.x, symmetries.y}) {
+    if (j < 0) continue;
+    moved.to[j] -= moved.from[j];
+    moved.from[j] = 0;
+  }
+  return moved;
+}
+
+// Moves the answer back.
+void move_to(const BoundaryValueProblem& problem, Geodesic& geodesic) {
+  const Symmetries& symmetries = problem.segment.info.symmetries;
+  for (const int j : {symmetries.x, symmetries.y}) {
+    if (j < 0) continue;
+    for (std::vector<double>& q : geodesic.trajectory.q) q[j] += problem.from[j];
+  }
+}
+
 // from = to: the path that does not move.
 Extremal constant_path(const BoundaryValueProblem& problem) {
   Extremal extremal;
@@ -83,11 +105,12 @@ void GeodesicOptions::validate(const BoundaryValueProblem& problem) const {
               std::to_string(problem.segment.dof));
 }
 
-GeodesicReport find_geodesics(const BoundaryValueProblem& problem, const GeodesicOptions& options) {
-  problem.validate();
-  options.validate(problem);
+GeodesicReport find_geodesics(const BoundaryValueProblem& asked, const GeodesicOptions& options) {
+  asked.validate();
+  options.validate(asked);
   const auto began = std::chrono::steady_clock::now();
   GeodesicReport report;
+  const BoundaryValueProblem problem = at_origin(asked);
   Search search(problem, options);
   std::vector<Extremal> list;
   bool finished = true;
@@ -106,6 +129,7 @@ GeodesicReport find_geodesics(const BoundaryValueProblem& problem, const Geodesi
   }
   parallel_for(static_cast<int>(list.size()), thread_count(options.threads), [&](int i) {
     complete(problem, options.samples, list[i]);
+    move_to(asked, list[i].geodesic);
   });
   for (Extremal& extremal : list) report.geodesics.push_back(std::move(extremal.geodesic));
   report.starts = search.starts();

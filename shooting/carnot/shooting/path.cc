@@ -22,6 +22,22 @@ void fill_momenta(const Segment& segment, double h, Path& path) {
   }
 }
 
+double discrete_action(const Segment& segment, double h, const Path& path) {
+  const int n = path.dof;
+  std::vector<double> middle(n), velocity(n), terms(n + segment.transcribed + 1);
+  double action = 0;
+  for (int i = 0; i < path.intervals; ++i) {
+    for (int j = 0; j < n; ++j) {
+      middle[j] = 0.5 * (path.configuration(i)[j] + path.configuration(i + 1)[j]);
+      velocity[j] = (path.configuration(i + 1)[j] - path.configuration(i)[j]) / h;
+    }
+    if (!segment.midpoint(middle.data(), velocity.data(), terms.data(), nullptr)) continue;
+    for (int j = 0; j < n; ++j) action += 0.5 * h * terms[j] * terms[j];
+    action -= h * terms[n + segment.transcribed];
+  }
+  return action;
+}
+
 void Path::gather(int i, int multipliers, double* x) const {
   std::copy(configuration(i), configuration(i) + 2 * dof, x);
   std::copy(lambda.data() + i * multipliers, lambda.data() + (i + 1) * multipliers, x + 2 * dof);

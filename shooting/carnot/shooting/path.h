@@ -26,4 +26,7 @@ struct Path {
 // sides say, D2 F_d and -D1 F_d. They agree on a discrete extremal.
 void fill_momenta(const Segment& segment, double h, Path& path);
 
+// The action of the midpoint transcription, sum_i h L.
+double discrete_action(const Segment& segment, double h, const Path& path);
+
 }  // namespace carnot

@@ -9,6 +9,7 @@
 #include "carnot/shooting/classification.h"
 #include "carnot/shooting/discrete_newton.h"
 #include "carnot/shooting/momentum_starts.h"
+#include "carnot/shooting/near_target.h"
 #include "carnot/shooting/polish.h"
 #include "carnot/shooting/starts.h"
 #include "carnot/shooting/sweep.h"
@@ -28,10 +29,12 @@ constexpr int kEnoughHits = 3;         // of the least action, before a search f
 constexpr double kRival = 0.02;        // extremals this close to the least action, relative,
 constexpr int kConvergedPerRival = 5;  // make the search longer: there may be another
 constexpr double kSameAction = 1e-9;
+constexpr double kSameDiscreteAction = 1e-6;
 
 }  // namespace
 
 bool Search::run() {
+  if (problem_.segment.has_transcription()) easy_ = easy_factor(problem_);
   int limit = options_.all ? kMaxStartsAll : kMaxStarts;
   if (options_.starts > 0) limit = options_.starts;
   const bool by_paths = problem_.segment.has_transcription();
@@ -147,6 +150,7 @@ void Search::sweep_round(int round) {
   SweepOptions sweep;
   sweep.seed = options_.seed;
   sweep.round = round;
+  sweep.intervals = round % 2 == 0 ? 64 : 160;  // the longest wind more often than a grid sees
   sweep.momentum_scale.assign(problem_.segment.dof, 0.0);
   double shortest = std::numeric_limits<double>::infinity();
   double longest = 0;
@@ -187,13 +191,13 @@ void Search::absorb(const std::vector<Candidate>& candidates) {
     if (!candidate.found) continue;
     const std::size_t known = find_discrete(candidate.path);
     if (known < discrete_.size()) {
-      if (extremal_of_[known] >= 0) ++hits_[extremal_of_[known]], ++converged_;
-      if (extremal_of_[known] == kPending) ++pending_hits_[known];
+      const int extremal = discrete_[known].extremal;
+      if (extremal >= 0) ++hits_[extremal], ++converged_;
+      if (extremal == kPending) ++discrete_[known].pending_hits;
       continue;
     }
-    discrete_.push_back(candidate.path);
-    extremal_of_.push_back(kPending);
-    pending_hits_.push_back(1);
+    const double h = problem_.time / candidate.path.intervals;
+    discrete_.push_back({candidate.path, discrete_action(problem_.segment, h, candidate.path)});
     fresh.push_back(&candidate.path);
     fresh_index.push_back(known);
   }
@@ -203,10 +207,10 @@ void Search::absorb(const std::vector<Candidate>& candidates) {
   });
   for (std::size_t i = 0; i < fresh.size(); ++i) {
     const int index = add(polished[i]);
-    extremal_of_[fresh_index[i]] = index;
+    discrete_[fresh_index[i]].extremal = index;
     if (index < 0) continue;
-    hits_[index] += pending_hits_[fresh_index[i]];
-    converged_ += pending_hits_[fresh_index[i]];
+    hits_[index] += discrete_[fresh_index[i]].pending_hits;
+    converged_ += discrete_[fresh_index[i]].pending_hits;
   }
 }
 
@@ -215,14 +219,16 @@ Search::Candidate Search::relax_start(int i) const {
   constexpr double kCollapsed = 0.5;
   constexpr int kAttempts = 3;
   constexpr double kStiffer = 8;
-  const Start start = make_start(problem_, options_.seed, i);
+  const BoundaryValueProblem easy = easy_ > 1 ? stretched(problem_, easy_) : problem_;
+  const Start start = make_start(easy, options_.seed, i);
   RelaxationOptions relaxation = start.relaxation;
   Candidate candidate;
   for (int attempt = 0; attempt < kAttempts; ++attempt, relaxation.penalty *= kStiffer) {
     candidate.path = start.path;
-    if (relax(problem_, relaxation, candidate.path).violation < kCollapsed) break;
+    if (relax(easy, relaxation, candidate.path).violation < kCollapsed) break;
   }
-  candidate.found = tighten(problem_, {}, candidate.path).converged;
+  candidate.found = tighten(easy, {}, candidate.path).converged;
+  if (candidate.found && easy_ > 1) candidate.found = shrink(problem_, easy_, candidate.path);
   return candidate;
 }
 
@@ -249,9 +255,16 @@ std::size_t Search::find_discrete(const Path& path) const {
   for (const ProblemSymmetry& symmetry : symmetries_) {
     images.push_back(partner(problem_.segment.info, symmetry, path));
   }
+  const double action = discrete_action(problem_.segment, problem_.time / path.intervals, path);
   for (std::size_t i = 0; i < discrete_.size(); ++i) {
+    if (discrete_[i].path.intervals != path.intervals) continue;
+    const double above = std::abs(action - discrete_[i].action);
+    if (above > kSameDiscreteAction * std::abs(action)) continue;
+    // Members of one family are as good as each other.
+    const int extremal = discrete_[i].extremal;
+    if (extremal >= 0 && extremals_[extremal].singular) return i;
     for (const Path& image : images) {
-      if (same_nodes(discrete_[i], image)) return i;
+      if (same_nodes(discrete_[i].path, image)) return i;
     }
   }
   return discrete_.size();

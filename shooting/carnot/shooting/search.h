@@ -70,16 +70,23 @@ class Search {
   static constexpr int kNone = -1;
   static constexpr int kPending = -2;
 
+  // A discrete extremal that has been seen.
+  struct Discrete {
+    Path path;
+    double action = 0;
+    int extremal = kPending;  // the one it became, kNone or kPending,
+    int pending_hits = 1;     // and how often it was seen before that was known
+  };
+
   const BoundaryValueProblem& problem_;
   const GeodesicOptions& options_;
   int threads_;
   std::vector<ProblemSymmetry> symmetries_;
   std::vector<Extremal> extremals_;
   std::vector<int> hits_;
-  bool descends_ = false;          // the best extremal so far is no minimum
-  std::vector<Path> discrete_;     // discrete extremals seen,
-  std::vector<int> extremal_of_;   // the extremal each became, kNone or kPending,
-  std::vector<int> pending_hits_;  // and how often it was seen before that was known
+  double easy_ = 1;        // relaxation aims at a target this many times further away
+  bool descends_ = false;  // the best extremal so far is no minimum
+  std::vector<Discrete> discrete_;
   int starts_ = 0;
   int converged_ = 0;
 };

@@ -12,15 +12,9 @@ namespace {
 constexpr int kIntervals = 32;
 constexpr int kModes = 3;
 
-// What the straight line tells of sizes.
-struct Scales {
-  double distance = 0;            // D
-  double radian = 1;              // S
-  double violation = 0;           // root mean square of |G(q) (to - from)|
-  std::vector<double> per_metre;  // change of coordinate j that has length 1
-};
+}  // namespace
 
-Scales measure(const BoundaryValueProblem& problem) {
+StartScales start_scales(const BoundaryValueProblem& problem) {
   const Segment& segment = problem.segment;
   const int n = segment.dof;
   const int k = segment.transcribed;
@@ -31,7 +25,7 @@ Scales measure(const BoundaryValueProblem& problem) {
     for (int j = 0; j < n; ++j) sum += terms[j] * terms[j];
     return std::sqrt(sum);
   };
-  Scales scales;
+  StartScales scales;
   for (int j = 0; j < n; ++j) step[j] = problem.to[j] - problem.from[j];
   constexpr int kSamples = 8;
   for (int i = 0; i < kSamples; ++i) {
@@ -55,6 +49,8 @@ Scales measure(const BoundaryValueProblem& problem) {
   if (angles > 0) scales.radian = std::sqrt(radian2 / angles);
   return scales;
 }
+
+namespace {
 
 // Amplitudes, modes x n, in units of the wiggle's size.
 std::vector<double> amplitudes(int n, std::uint64_t seed, int i) {
@@ -92,7 +88,7 @@ Start make_start(const BoundaryValueProblem& problem, std::uint64_t seed, int i)
   constexpr int kOuterStiff = 4;
   constexpr double kStiff = 100;
   const int n = problem.segment.dof;
-  const Scales scales = measure(problem);
+  const StartScales scales = start_scales(problem);
   const double ratio = scales.distance / scales.radian;
   const bool against = scales.violation > 0.1 * scales.distance && ratio < 0.5;
   const std::array exponents{1.0 / 3, 0.5, against ? 1.0 / 3 : 1.0};

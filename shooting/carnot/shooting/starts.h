@@ -14,12 +14,23 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "carnot/shooting/boundary_value_problem.h"
 #include "carnot/shooting/path.h"
 #include "carnot/shooting/relaxation.h"
 
 namespace carnot {
+
+// What the straight line tells of sizes.
+struct StartScales {
+  double distance = 0;            // D
+  double radian = 1;              // S
+  double violation = 0;           // root mean square of |G(q) (to - from)|
+  std::vector<double> per_metre;  // change of coordinate j that has length 1
+};
+
+StartScales start_scales(const BoundaryValueProblem& problem);
 
 struct Start {
   Path path;

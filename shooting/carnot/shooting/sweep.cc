@@ -11,8 +11,7 @@
 namespace carnot {
 namespace {
 
-constexpr long kSteps = 16;     // enough to see where a trajectory goes
-constexpr int kIntervals = 64;  // of the paths made
+constexpr long kSteps = 16;  // enough to see where a trajectory goes
 
 struct Draw {
   std::vector<double> p;
@@ -61,26 +60,26 @@ Draw draw(const BoundaryValueProblem& problem, const SweepOptions& options, int 
 }
 
 // The trajectory from p with its end pulled to the target, and its multipliers.
-Path pulled(const BoundaryValueProblem& problem, const std::vector<double>& p) {
+Path pulled(const BoundaryValueProblem& problem, const std::vector<double>& p, int intervals) {
   const Segment& segment = problem.segment;
   const int n = segment.dof;
   const int k = segment.transcribed;
-  const Knots knots = knots_of(problem, p, kIntervals, kIntervals);
+  const Knots knots = knots_of(problem, p, intervals, intervals);
   Path path;
-  path.intervals = kIntervals;
+  path.intervals = intervals;
   path.dof = n;
-  path.q.resize(static_cast<std::size_t>(kIntervals + 1) * n);
-  path.lambda.resize(static_cast<std::size_t>(kIntervals) * k);
-  for (int i = 0; i <= kIntervals; ++i) {
-    const double share = static_cast<double>(i) / kIntervals;
+  path.q.resize(static_cast<std::size_t>(intervals + 1) * n);
+  path.lambda.resize(static_cast<std::size_t>(intervals) * k);
+  for (int i = 0; i <= intervals; ++i) {
+    const double share = static_cast<double>(i) / intervals;
     for (int j = 0; j < n; ++j) {
-      const double missing = problem.to[j] - knots.at(kIntervals)[j];
+      const double missing = problem.to[j] - knots.at(intervals)[j];
       path.configuration(i)[j] = knots.at(i)[j] + share * missing;
     }
   }
-  std::copy(problem.to.begin(), problem.to.end(), path.configuration(kIntervals));
+  std::copy(problem.to.begin(), problem.to.end(), path.configuration(intervals));
   std::vector<double> middle(2 * n);
-  for (int i = 0; i < kIntervals && k > 0; ++i) {
+  for (int i = 0; i < intervals && k > 0; ++i) {
     for (int j = 0; j < 2 * n; ++j) middle[j] = 0.5 * (knots.at(i)[j] + knots.at(i + 1)[j]);
     segment.midpoint_multipliers(middle.data(), middle.data() + n, path.lambda.data() + i * k);
   }
@@ -99,7 +98,7 @@ std::vector<Path> near_hits(const BoundaryValueProblem& problem,
   const auto kept = std::min<std::size_t>(options.keep, draws.size());
   std::vector<Path> paths;
   for (std::size_t i = 0; i < kept && std::isfinite(draws[i].miss); ++i) {
-    paths.push_back(pulled(problem, draws[i].p));
+    paths.push_back(pulled(problem, draws[i].p, options.intervals));
   }
   return paths;
 }

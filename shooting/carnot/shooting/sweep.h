@@ -16,10 +16,11 @@ namespace carnot {
 
 struct SweepOptions {
   std::uint64_t seed = 0;
-  int round = 0;      // different draws for different rounds
-  int flows = 500;    // trajectories
-  int keep = 40;      // near hits
-  double lowest = 0;  // kinetic energy, drawn uniformly between the two
+  int round = 0;       // different draws for different rounds
+  int flows = 500;     // trajectories
+  int keep = 40;       // near hits
+  int intervals = 64;  // of the paths made
+  double lowest = 0;   // kinetic energy, drawn uniformly between the two
   double highest = 0;
   std::vector<double> momentum_scale;  // n standard deviations, up to a common factor
 };

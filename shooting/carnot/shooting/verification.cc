@@ -81,9 +81,13 @@ std::optional<Extremal> verify(const BoundaryValueProblem& problem,
   std::vector<double> p0 = knots.p0();
   Eigen::MatrixXd tangent;
   double error = std::numeric_limits<double>::infinity();
-  if (correct(problem, steps, 1e-3 * tolerance, p0, tangent) <= tolerance) {
+  // Near targets ask for digits relative to the distance.
+  const double distance =
+      largest_difference(problem.from.data(), problem.to.data(), problem.segment.dof);
+  const double aim = 1e-3 * tolerance * (distance > 0 ? std::min(1.0, distance) : 1);
+  if (correct(problem, steps, aim, p0, tangent) <= tolerance) {
     // Holonomic constraints: p along the rows of Dh moves nothing.
-    reduce(problem, steps, tolerance, p0, tangent);
+    reduce(problem, steps, aim, p0, tangent);
     extremal.singular = kernel_of(tangent).cols() > problem.segment.holonomic;
     if (problem.segment.holonomic > 0) project(problem, p0);
     extremal.knots = knots_of(problem, p0, 1, tighter);
