@@ -20,10 +20,12 @@ constexpr long kMostStarts = 10000000;
 
 constexpr const char* kFooter = R"(
 No guess is needed. Distinct extremals are listed, least action first; mirror partners count
-separately and angles are not reduced modulo 2 pi. Every extremal is checked by an independent
-integration at a tighter setting: its largest error at the end is "error" in the table and
-"endpoint_error" in the JSON. Angles are radians; pi/2 and -3*pi/4 are numbers. Units are the
-scene's own: see `carnot scenes SCENE`.
+separately. Angles live on the cover: 0 and 2 pi are different ends, unless --mod-angles. Every
+extremal is checked by an independent integration at a tighter setting: its largest error at the end
+is "error" in the table and "endpoint_error" in the JSON. There, "hits" counts the starts that led to
+an extremal or a mirror partner, and "missed_estimate" is Chao's estimate of how many were not
+found. Angles are radians; pi/2 and -3*pi/4 are numbers. Units are the scene's own: see
+`carnot scenes SCENE`.
 
 Examples
   carnot geodesic vehicle --from 0,0,0,0 --to 0,1,0,0 --plot parking.png
@@ -79,6 +81,7 @@ GeodesicOptions check_search(const Options& options, const Run& run) {
   if (!options.guess.empty()) {
     search.guess = parse_vector("--guess", options.guess, coordinate_names(*run.entry));
   }
+  search.mod_angles = options.mod_angles;
   search.seed = run.seed;
   search.threads = run.threads;
   search.samples = run.samples;
@@ -97,9 +100,6 @@ void check_ends(const Options& options, const GeodesicRequest& request) {
 }
 
 GeodesicRequest check(const Options& options) {
-  if (options.mod_angles) {
-    refuse("--mod-angles", "", "not available yet", "no --mod-angles: angles live on the cover");
-  }
   GeodesicRequest request;
   request.run = check(options.run);
   const auto names = coordinate_names(*request.run.entry);
@@ -135,7 +135,7 @@ void add_search_options(CLI::App& app, Options& options) {
   add("--tolerance", options.tolerance, "TOL", "largest error at the end (1e-10)");
   add("--minimiser", options.minimiser, "NAME", "newton, ceres, nlopt or nlopt:NAME (newton)");
   add("--guess", options.guess, "P0", "momentum to start from instead");
-  app.add_flag("--mod-angles", options.mod_angles, "ends agree modulo periods (not available yet)");
+  app.add_flag("--mod-angles", options.mod_angles, "angles agree modulo their periods");
 }
 
 }  // namespace

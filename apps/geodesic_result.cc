@@ -43,6 +43,8 @@ Json geodesic_json(const Geodesic& geodesic, std::size_t rank, bool with_traject
   json["morse_index"] = or_null(geodesic.morse_index);
   json["family_dimension"] = or_null(geodesic.family_dimension);
   json["rank_in_list"] = rank;
+  json["hits"] = geodesic.hits;
+  if (!geodesic.windings.empty()) json["windings"] = geodesic.windings;
   for (const auto& [name, value] : geodesic.extremes) json[name] = value;
   if (with_trajectory) json["trajectory"] = trajectory_json(geodesic.trajectory);
   return json;
@@ -68,6 +70,8 @@ Json report_json(const GeodesicRequest& request,
   json["geodesics"] = std::move(geodesics);
   json["starts"] = report.starts;
   json["converged_starts"] = report.converged_starts;
+  json["distinct_hit"] = report.distinct_hit;
+  json["missed_estimate"] = report.missed_estimate;
   json["elapsed_seconds"] = report.elapsed_seconds;
   return json;
 }

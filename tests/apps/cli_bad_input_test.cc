@@ -203,7 +203,6 @@ const std::vector<BadInput> kGeodesic =
                {"--from 0,0,0,0 --to 0,1,0,0 --minimiser nlopt:", "--minimiser 'nlopt:'"},
                {"--from 0,0,0,0 --to 0,1,0,0 --guess 1,2", "--guess '1,2'"},
                {"--from 0,0,0,0 --to 0,1,0,0 --guess 1,2,nan,0", "--guess '1,2,nan,0'"},
-               {"--from 0,0,0,0 --to 0,1,0,0 --mod-angles", "not available yet"},
                {"--from 0,0,0,0 --to 0,1,0,0 --plot x.bmp", "x.bmp"},
                {"--from 0,0,0,0 --to 0,1,0,0 --set beta=0", "--set 'beta=0'"},
                {"--from 0,0,0,0 --to 0,1,0,0 --momentum 1,0,0,0", "--momentum"}});

@@ -38,6 +38,8 @@ TEST(GeodesicCommand, KeepsTheContract) {
                           "geodesics",
                           "starts",
                           "converged_starts",
+                          "distinct_hit",
+                          "missed_estimate",
                           "elapsed_seconds"));
   EXPECT_EQ(json["status"], "converged");
   EXPECT_EQ(json["to"].dump(), "[0,1,0,0]");
@@ -59,6 +61,7 @@ TEST(GeodesicCommand, KeepsTheContract) {
                           "morse_index",
                           "family_dimension",
                           "rank_in_list",
+                          "hits",
                           "largest_steering_angle",
                           "trajectory"));
   EXPECT_EQ(geodesic["p0"].size(), 4);
@@ -116,6 +119,19 @@ TEST(GeodesicCommand, WithEqualEndsStays) {
   ASSERT_EQ(json["geodesics"].size(), 1);
   EXPECT_EQ(json["geodesics"][0]["action"], 0);
   EXPECT_EQ(json["geodesics"][0]["p0"].dump(), "[0,0,0,0]");
+}
+
+// A whole turn is no way at all where angles agree modulo 2 pi.
+TEST(GeodesicCommand, ModAngles) {
+  const Words words{"geodesic", "unicycle", "--from", "0,0,0", "--to", "0,0,2*pi", "--json"};
+  const auto cover = run(words).json()["geodesics"][0];
+  EXPECT_NEAR(cover["length"].get<double>(), 6.283185307179586, 1e-12);
+  EXPECT_FALSE(cover.contains("windings"));
+  Words modulo = words;
+  modulo.emplace_back("--mod-angles");
+  const auto identified = run(modulo).json()["geodesics"][0];
+  EXPECT_EQ(identified["action"], 0);
+  EXPECT_EQ(identified["windings"].dump(), "[0,0,-1]");
 }
 
 TEST(GeodesicCommand, DoesNotDependOnThreads) {

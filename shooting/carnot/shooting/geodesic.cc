@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "carnot/shooting/classification.h"
 #include "carnot/shooting/multiple_shooting.h"
 #include "carnot/shooting/parallel.h"
+#include "carnot/shooting/ranking.h"
 #include "carnot/shooting/search.h"
+#include "carnot/shooting/windings.h"
 
 namespace carnot {
 namespace {
@@ -64,6 +68,17 @@ bool stays(const BoundaryValueProblem& problem) {
   return completed;
 }
 
+// What the searches for all images of the target gave.
+struct Found {
+  std::vector<BoundaryValueProblem> problems;  // one for each image
+  std::vector<Extremal> list;
+  std::vector<int> hits;
+  int starts = 0;
+  int converged = 0;
+  bool finished = true;
+  std::string failure;  // why there is none, of the first image
+};
+
 std::string failure_message(const BoundaryValueProblem& problem,
                             const Search& search,
                             const GeodesicOptions& options) {
@@ -71,6 +86,14 @@ std::string failure_message(const BoundaryValueProblem& problem,
       std::to_string(search.starts()) + (search.starts() == 1 ? " start" : " starts") + " tried";
   if (!options.guess.empty()) {
     return "the guess did not lead to an extremal: leave --guess out to search from paths";
+  }
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const Extremal& longer : search.extremals(true)) {
+    shortest = std::min(shortest, longer.geodesic.length.value_or(shortest));
+  }
+  if (std::isfinite(shortest)) {
+    return "the shortest extremal found has the length " + std::to_string(shortest) +
+           ": try a larger --max-length";
   }
   if (!problem.segment.has_transcription()) {
     return "no momentum led to an extremal (" + tried +
@@ -82,6 +105,31 @@ std::string failure_message(const BoundaryValueProblem& problem,
   }
   return "discrete extremals were found but none could be verified (" + tried +
          "): try a larger --tolerance or more --starts";
+}
+
+void search_image(const GeodesicOptions& options, Found& found) {
+  const BoundaryValueProblem& problem = found.problems.back();
+  const int image = static_cast<int>(found.problems.size()) - 1;
+  if (stays(problem)) {
+    found.list.push_back(constant_path(problem));
+    found.list.back().image = image;
+    return;
+  }
+  Search search(problem, options);
+  if (options.guess.empty()) {
+    found.finished = search.run();
+  } else {
+    search.polish_guess();
+  }
+  for (Extremal& extremal : search.extremals()) {
+    found.list.push_back(std::move(extremal));
+    found.list.back().image = image;
+  }
+  const std::vector<int> hits = search.hits();
+  found.hits.insert(found.hits.end(), hits.begin(), hits.end());
+  found.starts += search.starts();
+  found.converged += search.converged();
+  if (found.failure.empty()) found.failure = failure_message(problem, search, options);
 }
 
 }  // namespace
@@ -111,32 +159,35 @@ GeodesicReport find_geodesics(const BoundaryValueProblem& asked, const GeodesicO
   const auto began = std::chrono::steady_clock::now();
   GeodesicReport report;
   const BoundaryValueProblem problem = at_origin(asked);
-  Search search(problem, options);
-  std::vector<Extremal> list;
-  bool finished = true;
-  if (stays(problem)) {
-    list.push_back(constant_path(problem));
-  } else {
-    if (options.guess.empty()) {
-      finished = search.run();
-    } else {
-      search.polish_guess();
-    }
-    list = search.ranked();
+  std::vector<Image> images{{problem.to, {}}};
+  if (options.mod_angles) images = images_of_target(problem, options.max_length);
+  Found found;
+  found.problems.reserve(images.size());  // extremals refer to them
+  for (const Image& image : images) {
+    found.problems.push_back(problem);
+    found.problems.back().to = image.to;
+    search_image(options, found);
+    const bool stayed = !found.list.empty() && found.list.back().geodesic.action == 0;
+    if (!found.finished || (stayed && !options.all && options.count == 1)) break;
   }
+  rank(found.list);
+  std::vector<Extremal>& list = found.list;
   if (!options.all && list.size() > static_cast<std::size_t>(options.count)) {
     list.resize(options.count);
   }
   parallel_for(static_cast<int>(list.size()), thread_count(options.threads), [&](int i) {
-    complete(problem, options.samples, list[i]);
+    list[i].geodesic.windings = images[list[i].image].windings;
+    complete(found.problems[list[i].image], options.samples, list[i]);
     move_to(asked, list[i].geodesic);
   });
   for (Extremal& extremal : list) report.geodesics.push_back(std::move(extremal.geodesic));
-  report.starts = search.starts();
-  report.converged_starts = search.converged();
+  report.starts = found.starts;
+  report.converged_starts = found.converged;
+  report.distinct_hit = static_cast<int>(found.hits.size());
+  report.missed_estimate = missed_estimate(found.hits);
   report.status = list.empty() ? GeodesicStatus::kNotConverged : GeodesicStatus::kConverged;
-  if (list.empty()) report.message = failure_message(problem, search, options);
-  if (!finished) {
+  if (list.empty()) report.message = found.failure;
+  if (!found.finished) {
     report.status = GeodesicStatus::kInterrupted;
     report.message = "interrupted";
   }

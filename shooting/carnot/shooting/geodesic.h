@@ -39,6 +39,8 @@ struct Geodesic {
   std::optional<int> family_dimension;
   std::vector<std::pair<std::string, double>> extremes;  // e.g. largest_steering_angle
   StepPlan plan;                                         // steps of the verified integration
+  int hits = 0;               // starts that led here or to a mirror partner
+  std::vector<int> windings;  // whole periods added to the target, with mod_angles
   Trajectory trajectory;
 };
 
@@ -49,6 +51,7 @@ struct GeodesicOptions {
   int starts = 0;                    // paths to relax; 0: the default for what is asked
   double tolerance = 1e-10;          // largest endpoint error of a verified extremal
   std::string minimiser = "newton";  // newton, ceres, nlopt, nlopt:NAME (see minimisers())
+  bool mod_angles = false;           // angles need to agree modulo their periods only
   std::vector<double> guess;         // p0 to start from instead of paths; empty: none
   std::uint64_t seed = 0;
   int threads = 0;     // 0: all cores
@@ -67,6 +70,8 @@ struct GeodesicReport {
   std::vector<Geodesic> geodesics;
   int starts = 0;
   int converged_starts = 0;
+  int distinct_hit = 0;        // extremals, up to symmetry, that starts led to,
+  double missed_estimate = 0;  // and how many more there may be, by Chao's estimate
   double elapsed_seconds = 0;
 };
 

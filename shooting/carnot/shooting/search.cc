@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "carnot/shooting/classification.h"
@@ -11,6 +10,7 @@
 #include "carnot/shooting/momentum_starts.h"
 #include "carnot/shooting/near_target.h"
 #include "carnot/shooting/polish.h"
+#include "carnot/shooting/ranking.h"
 #include "carnot/shooting/starts.h"
 #include "carnot/shooting/sweep.h"
 
@@ -28,7 +28,6 @@ constexpr int kSweeps = 24;            // rounds of near hits, where more than t
 constexpr int kEnoughHits = 3;         // of the least action, before a search for it ends
 constexpr double kRival = 0.02;        // extremals this close to the least action, relative,
 constexpr int kConvergedPerRival = 5;  // make the search longer: there may be another
-constexpr double kSameAction = 1e-9;
 constexpr double kSameDiscreteAction = 1e-6;
 
 }  // namespace
@@ -68,30 +67,22 @@ void Search::polish_guess() {
   converged_ = extremals_.empty() ? 0 : 1;
 }
 
-std::vector<Extremal> Search::ranked() const {
-  std::vector<std::size_t> order(extremals_.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return extremals_[a].geodesic.action < extremals_[b].geodesic.action;
-  });
-  // Equal actions, as of mirror partners, are ranked by p0, not by round-off.
-  for (auto first = order.begin(); first != order.end();) {
-    const double action = extremals_[*first].geodesic.action;
-    const auto last = std::find_if(first, order.end(), [&](std::size_t i) {
-      return extremals_[i].geodesic.action - action > kSameAction * std::abs(action);
-    });
-    std::sort(first, last, [&](std::size_t a, std::size_t b) {
-      return extremals_[a].geodesic.p0 < extremals_[b].geodesic.p0;
-    });
-    first = last;
-  }
+std::vector<Extremal> Search::extremals(bool longer) const {
   std::vector<Extremal> list;
-  for (const std::size_t i : order) {
-    if (extremals_[i].geodesic.length.value_or(0) <= options_.max_length) {
-      list.push_back(extremals_[i]);
-    }
+  for (std::size_t i = 0; i < extremals_.size(); ++i) {
+    if (!longer && extremals_[i].geodesic.length.value_or(0) > options_.max_length) continue;
+    list.push_back(extremals_[i]);
+    list.back().geodesic.hits = hits_[root(static_cast<int>(i))];
   }
   return list;
+}
+
+std::vector<int> Search::hits() const {
+  std::vector<int> hits;
+  for (std::size_t i = 0; i < hits_.size(); ++i) {
+    if (hits_[i] > 0) hits.push_back(hits_[i]);
+  }
+  return hits;
 }
 
 bool Search::lacks() const {
@@ -141,7 +132,7 @@ void Search::momentum_round(int count) {
   for (const std::optional<Extremal>& extremal : polished) {
     const int index = add(extremal);
     if (index < 0) continue;
-    ++hits_[index];
+    ++hits_[root(index)];
     ++converged_;
   }
 }
@@ -192,7 +183,7 @@ void Search::absorb(const std::vector<Candidate>& candidates) {
     const std::size_t known = find_discrete(candidate.path);
     if (known < discrete_.size()) {
       const int extremal = discrete_[known].extremal;
-      if (extremal >= 0) ++hits_[extremal], ++converged_;
+      if (extremal >= 0) ++hits_[root(extremal)], ++converged_;
       if (extremal == kPending) ++discrete_[known].pending_hits;
       continue;
     }
@@ -209,7 +200,7 @@ void Search::absorb(const std::vector<Candidate>& candidates) {
     const int index = add(polished[i]);
     discrete_[fresh_index[i]].extremal = index;
     if (index < 0) continue;
-    hits_[index] += discrete_[fresh_index[i]].pending_hits;
+    hits_[root(index)] += discrete_[fresh_index[i]].pending_hits;
     converged_ += discrete_[fresh_index[i]].pending_hits;
   }
 }
@@ -232,7 +223,7 @@ Search::Candidate Search::relax_start(int i) const {
   return candidate;
 }
 
-int Search::add(const std::optional<Extremal>& extremal) {
+int Search::add(const std::optional<Extremal>& extremal, int partner_of) {
   if (!extremal) return kNone;
   for (std::size_t i = 0; i < extremals_.size(); ++i) {
     if (same(extremals_[i], *extremal) || same_family(extremals_[i], *extremal)) {
@@ -242,10 +233,11 @@ int Search::add(const std::optional<Extremal>& extremal) {
   const int index = static_cast<int>(extremals_.size());
   extremals_.push_back(*extremal);
   hits_.push_back(0);
+  partner_of_.push_back(partner_of);
   for (const ProblemSymmetry& symmetry : symmetries_) {
     if (!wants_more()) break;
     const Knots image = partner(problem_.segment.info, symmetry, extremal->knots);
-    add(verify(problem_, image, kFirstSteps, options_.tolerance));
+    add(verify(problem_, image, kFirstSteps, options_.tolerance), index);
   }
   return index;
 }

@@ -31,13 +31,18 @@ class Search {
   // Polishes one guess of p0 instead.
   void polish_guess();
 
-  // Least action first, equal ones in the order of p0; none longer than options.max_length.
-  [[nodiscard]] std::vector<Extremal> ranked() const;
+  // None longer than options.max_length, unless `longer` ones are asked for too.
+  [[nodiscard]] std::vector<Extremal> extremals(bool longer = false) const;
+  // How often each was hit, up to symmetry.
+  [[nodiscard]] std::vector<int> hits() const;
   [[nodiscard]] int starts() const { return starts_; }
   [[nodiscard]] int converged() const { return converged_; }
   [[nodiscard]] bool any_discrete() const { return !discrete_.empty(); }
 
  private:
+  static constexpr int kNone = -1;
+  static constexpr int kPending = -2;
+
   // A relaxed path that satisfies the discrete equations.
   struct Candidate {
     bool found = false;
@@ -61,14 +66,16 @@ class Search {
   [[nodiscard]] Candidate relax_start(int i) const;
   [[nodiscard]] std::size_t best() const;
   // Adds what is new, and its mirror partners. Returns the index in the list, or -1.
-  int add(const std::optional<Extremal>& extremal);
+  int add(const std::optional<Extremal>& extremal, int partner_of = kNone);
+  // The one that stands for it and its mirror partners.
+  [[nodiscard]] int root(int index) const {
+    while (partner_of_[index] >= 0) index = partner_of_[index];
+    return index;
+  }
   // Index of a discrete extremal with the same nodes, or with those of its mirror partner, which
   // add() finds by itself; discrete_.size() when it is new.
   [[nodiscard]] std::size_t find_discrete(const Path& path) const;
   static bool same_nodes(const Path& a, const Path& b);
-
-  static constexpr int kNone = -1;
-  static constexpr int kPending = -2;
 
   // A discrete extremal that has been seen.
   struct Discrete {
@@ -84,8 +91,9 @@ class Search {
   std::vector<ProblemSymmetry> symmetries_;
   std::vector<Extremal> extremals_;
   std::vector<int> hits_;
-  double easy_ = 1;        // relaxation aims at a target this many times further away
-  bool descends_ = false;  // the best extremal so far is no minimum
+  std::vector<int> partner_of_;  // the extremal whose mirror image it is, or kNone
+  double easy_ = 1;              // relaxation aims at a target this many times further away
+  bool descends_ = false;        // the best extremal so far is no minimum
   std::vector<Discrete> discrete_;
   int starts_ = 0;
   int converged_ = 0;

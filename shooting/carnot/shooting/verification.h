@@ -21,6 +21,7 @@ struct Extremal {
   std::vector<std::vector<double>> path;
   bool singular = false;  // dq(T)/dp0 is singular: a member of a family, or abnormal
   std::optional<ConjugateTimes> conjugate;  // where they have been asked for
+  int image = 0;                            // of the target, see windings.h
 };
 
 // Nothing when neither check succeeds. `steps` is where the search for a step begins.

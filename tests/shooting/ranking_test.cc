@@ -1,0 +1,31 @@
+#include "carnot/shooting/ranking.h"
+
+#include <gtest/gtest.h>
+
+namespace carnot {
+namespace {
+
+Extremal extremal(double action, double p) {
+  Extremal result;
+  result.geodesic.action = action;
+  result.geodesic.p0 = {p};
+  return result;
+}
+
+TEST(Ranking, ByActionThenByMomentum) {
+  std::vector<Extremal> list{extremal(2, 0), extremal(1 + 1e-13, -3), extremal(1, 3)};
+  rank(list);
+  EXPECT_EQ(list[0].geodesic.p0[0], -3);
+  EXPECT_EQ(list[1].geodesic.p0[0], 3);
+  EXPECT_EQ(list[2].geodesic.action, 2);
+}
+
+TEST(MissedEstimate, IsThatOfChao) {
+  EXPECT_EQ(missed_estimate({}), 0);
+  EXPECT_EQ(missed_estimate({7, 3, 5}), 0);
+  EXPECT_EQ(missed_estimate({1, 1, 1, 1, 2, 2, 9}), 4);
+  EXPECT_EQ(missed_estimate({1, 1, 1}), 3);
+}
+
+}  // namespace
+}  // namespace carnot
