@@ -133,7 +133,10 @@ void add_search_options(CLI::App& app, Options& options) {
   add("--max-length", options.max_length, "A", "leave out longer ones");
   add("--starts", options.starts, "N", "paths to start from (as many as the task needs)");
   add("--tolerance", options.tolerance, "TOL", "largest error at the end (1e-10)");
-  add("--minimiser", options.minimiser, "NAME", "newton, ceres, nlopt or nlopt:NAME (newton)");
+  add("--minimiser",
+      options.minimiser,
+      "NAME",
+      "newton, ceres, nlopt or nlopt:NAME, NAME one of slsqp, lbfgs, mlsl, isres, crs (newton)");
   add("--guess", options.guess, "P0", "momentum to start from instead");
   app.add_flag("--mod-angles", options.mod_angles, "angles agree modulo their periods");
 }

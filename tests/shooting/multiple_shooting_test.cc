@@ -80,5 +80,18 @@ TEST(MultipleShooting, GivesUpWhereThereIsNothingNear) {
   }
 }
 
+// Every way joins the knots of an extremal that is known to a few digits.
+TEST(Shooting, EveryMinimiserArrives) {
+  const BoundaryValueProblem problem = test::vehicle({0, 0, 0, 0}, {2, 1, 0.5, 0.5});
+  for (const std::string& name : minimisers()) {
+    Knots knots = knots_of(problem, kRoughP0, 4, 16);
+    ShootingOptions options;
+    options.minimiser = name;
+    const Shooting shooting = shoot(problem, options, knots);
+    EXPECT_TRUE(shooting.converged) << name << ' ' << shooting.residual;
+    EXPECT_NEAR(knots.p0()[0], 2.1206609, 1e-6) << name;
+  }
+}
+
 }  // namespace
 }  // namespace carnot

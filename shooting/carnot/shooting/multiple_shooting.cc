@@ -2,7 +2,16 @@
 
 namespace carnot {
 
-std::vector<std::string> minimisers() { return {"newton", "ceres", "nlopt", "nlopt:slsqp"}; }
+std::vector<std::string> minimisers() {
+  return {"newton",
+          "ceres",
+          "nlopt",
+          "nlopt:slsqp",
+          "nlopt:lbfgs",
+          "nlopt:mlsl",
+          "nlopt:isres",
+          "nlopt:crs"};
+}
 
 Shooting shoot(const BoundaryValueProblem& problem, const ShootingOptions& options, Knots& knots) {
   if (options.minimiser == "newton") return shoot_with_newton(problem, options, knots);

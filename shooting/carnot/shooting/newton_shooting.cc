@@ -77,6 +77,8 @@ Shooting shoot_with_newton(const BoundaryValueProblem& problem,
                            const ShootingOptions& options,
                            Knots& knots) {
   constexpr double kShortestStep = 1.0 / 32;
+  constexpr int kTrials = 3;
+  constexpr double kContracts = 0.3;
   const ShootingEquations equations(problem, knots, options.steps);
   Banded system(equations, knots);
   std::vector<double> residual;
@@ -84,11 +86,14 @@ Shooting shoot_with_newton(const BoundaryValueProblem& problem,
   if (!system.evaluate(knots, true, residual)) return result;
   result.residual = norm(residual);
   result.growth = system.growth();
+  const double first = result.residual;
   Knots trial = knots;
   std::vector<double> step;
   std::vector<double> simplified;
   while (result.residual > options.tolerance && result.iterations < options.max_iterations) {
     if (result.growth > options.max_growth) break;
+    // Far from joined and not on the way.
+    if (result.iterations == kTrials && result.residual > kContracts * first) break;
     ++result.iterations;
     step = residual;
     if (!system.factor()) break;

@@ -17,7 +17,8 @@ constexpr long kFewSteps = 16;  // of the method over the whole time, at least
 // for Newton's method to keep its digits, they are set closer together.
 std::optional<Extremal> join(const BoundaryValueProblem& problem,
                              const GeodesicOptions& options,
-                             const Refinement& refined) {
+                             const Refinement& refined,
+                             int patience) {
   constexpr double kMaxGrowth = 1e5;
   constexpr int kIntervalsPerSegment = 32;
   constexpr int kIntervalsPerStep = 8;
@@ -25,6 +26,7 @@ std::optional<Extremal> join(const BoundaryValueProblem& problem,
   ShootingOptions shooting;
   shooting.minimiser = options.minimiser;
   shooting.max_growth = kMaxGrowth;
+  if (options.minimiser == "newton") shooting.max_iterations = patience;
   shooting.steps = std::max<long>(kFewSteps, refined.intervals / kIntervalsPerStep);
   int segments = std::max(kSegments, refined.intervals / kIntervalsPerSegment);
   for (int attempt = 0; attempt < kAttempts && segments <= refined.path.intervals; ++attempt) {
@@ -46,13 +48,18 @@ std::optional<Extremal> join(const BoundaryValueProblem& problem,
 std::optional<Extremal> polish(const BoundaryValueProblem& problem,
                                const GeodesicOptions& options,
                                const Path& path) {
+  // From a grid that is fine enough Newton's method takes two or three iterations. Where it takes
+  // more a finer grid, which is cheaper than the flow, comes first.
+  constexpr std::array kPatience{4, 8, 12};
   RefinementOptions refinement;
-  for (const double enough : {refinement.enough, 0.1 * refinement.enough}) {
-    refinement.enough = enough;
+  refinement.enough = 4e-2;
+  for (const int patience : kPatience) {
     const Refinement refined = refine(problem, refinement, path);
     if (!refined.found) return std::nullopt;
-    auto extremal = join(problem, options, refined);
+    auto extremal = join(problem, options, refined, patience);
     if (extremal) return extremal;
+    if (!refined.settled) return std::nullopt;
+    refinement.enough = 0.2 * refined.change;
   }
   return std::nullopt;
 }

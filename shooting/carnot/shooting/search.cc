@@ -21,7 +21,9 @@ constexpr int kSegments = 8;      // of multiple shooting; divides the intervals
 constexpr long kFirstSteps = 32;  // of the method over [0, T]
 constexpr int kRound = 8;         // starts between two looks at the list
 constexpr int kMinStarts = 16;
-constexpr int kMaxStarts = 96;   // when the best extremal keeps changing
+constexpr int kMaxStarts = 96;      // when the best extremal keeps changing
+constexpr int kMaxIntervals = 128;  // of the grids that paths are relaxed on
+constexpr int kArtefacts = 3;    // of a round, that are more than the rest: the grid is too coarse
 constexpr int kMaxDescents = 4;  // sweeps below an extremal that is no minimum
 constexpr int kMaxStartsAll = 240;
 constexpr int kSweeps = 24;            // rounds of near hits, where more than the best is wanted
@@ -117,7 +119,9 @@ bool Search::settled() {
 void Search::relax_round(int count) {
   std::vector<Candidate> candidates(count);
   parallel_for(count, threads_, [&](int i) { candidates[i] = relax_start(starts_ + i); });
-  absorb(candidates);
+  const Polished polished = absorb(candidates);
+  const bool artefacts = polished.failed >= kArtefacts && polished.failed > polished.good;
+  if (artefacts) intervals_ = std::min(2 * intervals_, kMaxIntervals);
 }
 
 void Search::momentum_round(int count) {
@@ -173,7 +177,7 @@ void Search::sweep_round(int round) {
   absorb(candidates);
 }
 
-void Search::absorb(const std::vector<Candidate>& candidates) {
+Search::Polished Search::absorb(const std::vector<Candidate>& candidates) {
   starts_ += static_cast<int>(candidates.size());
   // In the order of the starts, so that the list does not depend on the threads.
   std::vector<const Path*> fresh;
@@ -192,6 +196,7 @@ void Search::absorb(const std::vector<Candidate>& candidates) {
     fresh.push_back(&candidate.path);
     fresh_index.push_back(known);
   }
+  Polished tally;
   std::vector<std::optional<Extremal>> polished(fresh.size());
   parallel_for(static_cast<int>(fresh.size()), threads_, [&](int i) {
     polished[i] = polish(problem_, options_, *fresh[i]);
@@ -199,26 +204,30 @@ void Search::absorb(const std::vector<Candidate>& candidates) {
   for (std::size_t i = 0; i < fresh.size(); ++i) {
     const int index = add(polished[i]);
     discrete_[fresh_index[i]].extremal = index;
+    ++(index < 0 ? tally.failed : tally.good);
     if (index < 0) continue;
     hits_[root(index)] += discrete_[fresh_index[i]].pending_hits;
     converged_ += discrete_[fresh_index[i]].pending_hits;
   }
+  return tally;
 }
 
 Search::Candidate Search::relax_start(int i) const {
-  // Collapsed to the straight line, which violates the constraints: a stiffer penalty holds it.
+  // Collapsed to the straight line, which violates the constraints, or on the way there: a stiffer
+  // penalty holds the path.
   constexpr double kCollapsed = 0.5;
   constexpr int kAttempts = 3;
   constexpr double kStiffer = 8;
   const BoundaryValueProblem easy = easy_ > 1 ? stretched(problem_, easy_) : problem_;
-  const Start start = make_start(easy, options_.seed, i);
+  const Start start = make_start(easy, options_.seed, i, intervals_);
   RelaxationOptions relaxation = start.relaxation;
   Candidate candidate;
   for (int attempt = 0; attempt < kAttempts; ++attempt, relaxation.penalty *= kStiffer) {
     candidate.path = start.path;
-    if (relax(easy, relaxation, candidate.path).violation < kCollapsed) break;
+    if (!(relax(easy, relaxation, candidate.path).violation < kCollapsed)) continue;
+    candidate.found = tighten(easy, {}, candidate.path).converged;
+    if (candidate.found) break;
   }
-  candidate.found = tighten(easy, {}, candidate.path).converged;
   if (candidate.found && easy_ > 1) candidate.found = shrink(problem_, easy_, candidate.path);
   return candidate;
 }

@@ -61,8 +61,13 @@ class Search {
   void momentum_round(int count);
   // Energies from that of the shortest extremal to twice that, or to the longest one.
   void sweep_round(int round);
+  // What became of new discrete extremals.
+  struct Polished {
+    int good = 0;
+    int failed = 0;  // mostly artefacts of a coarse grid
+  };
   // Polishes what is new among the candidates and adds it to the list.
-  void absorb(const std::vector<Candidate>& candidates);
+  Polished absorb(const std::vector<Candidate>& candidates);
   [[nodiscard]] Candidate relax_start(int i) const;
   [[nodiscard]] std::size_t best() const;
   // Adds what is new, and its mirror partners. Returns the index in the list, or -1.
@@ -92,6 +97,7 @@ class Search {
   std::vector<Extremal> extremals_;
   std::vector<int> hits_;
   std::vector<int> partner_of_;  // the extremal whose mirror image it is, or kNone
+  int intervals_ = 32;           // of the grid that paths are relaxed on
   double easy_ = 1;              // relaxation aims at a target this many times further away
   bool descends_ = false;        // the best extremal so far is no minimum
   std::vector<Discrete> discrete_;

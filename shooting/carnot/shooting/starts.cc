@@ -9,7 +9,6 @@
 namespace carnot {
 namespace {
 
-constexpr int kIntervals = 32;
 constexpr int kModes = 3;
 
 }  // namespace
@@ -79,7 +78,7 @@ std::vector<double> amplitudes(int n, std::uint64_t seed, int i) {
 
 }  // namespace
 
-Start make_start(const BoundaryValueProblem& problem, std::uint64_t seed, int i) {
+Start make_start(const BoundaryValueProblem& problem, std::uint64_t seed, int i, int intervals) {
   constexpr double kMaxAngle = 1;      // radians
   constexpr double kMaxPenalty = 1e6;  // beyond this the least squares lose their digits
   constexpr std::array kFactors{1.0, 0.6, 2.0};
@@ -97,12 +96,12 @@ Start make_start(const BoundaryValueProblem& problem, std::uint64_t seed, int i)
   const std::vector<double> a = amplitudes(n, seed, i);
 
   Start start;
-  start.path.intervals = kIntervals;
+  start.path.intervals = intervals;
   start.path.dof = n;
-  start.path.q.resize(static_cast<std::size_t>(kIntervals + 1) * n);
-  for (int node = 0; node <= kIntervals; ++node) {
-    const double s = static_cast<double>(node) / kIntervals;
-    const bool end = node == 0 || node == kIntervals;
+  start.path.q.resize(static_cast<std::size_t>(intervals + 1) * n);
+  for (int node = 0; node <= intervals; ++node) {
+    const double s = static_cast<double>(node) / intervals;
+    const bool end = node == 0 || node == intervals;
     for (int j = 0; j < n; ++j) {
       double largest = size * scales.per_metre[j];
       if (problem.segment.info.configuration[j].period > 0) largest = std::min(largest, kMaxAngle);
@@ -110,7 +109,7 @@ Start make_start(const BoundaryValueProblem& problem, std::uint64_t seed, int i)
       for (int m = 0; m < kModes && !end; ++m) {
         wiggle += a[m * n + j] * std::sin((m + 1) * std::numbers::pi * s);
       }
-      const double line = node == kIntervals
+      const double line = node == intervals
                               ? problem.to[j]
                               : problem.from[j] + s * (problem.to[j] - problem.from[j]);
       start.path.configuration(node)[j] = line + largest * wiggle;

@@ -37,7 +37,10 @@ struct Start {
   RelaxationOptions relaxation;
 };
 
-// Number i of the sequence that belongs to `seed`.
-Start make_start(const BoundaryValueProblem& problem, std::uint64_t seed, int i);
+// Number i of the sequence that belongs to `seed`, on a grid of `intervals`.
+Start make_start(const BoundaryValueProblem& problem,
+                 std::uint64_t seed,
+                 int i,
+                 int intervals = 32);
 
 }  // namespace carnot
