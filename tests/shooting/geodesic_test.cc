@@ -213,12 +213,27 @@ TEST(Geodesic, AHopelessGuessSaysSo) {
   EXPECT_TRUE(report.geodesics.empty());
 }
 
-TEST(Geodesic, FailureSaysWhatToTry) {
-  GeodesicOptions options;
-  options.starts = 1;
-  const GeodesicReport report = find(test::vehicle({0, 0, 0, 0}, {0, 1e-13, 0, 0}), options);
+std::string failure(const BoundaryValueProblem& problem, const GeodesicOptions& options) {
+  const GeodesicReport report = find(problem, options);
   EXPECT_EQ(report.status, GeodesicStatus::kNotConverged);
-  EXPECT_NE(report.message.find("try"), std::string::npos);
+  EXPECT_TRUE(report.geodesics.empty());
+  return report.message;
+}
+
+TEST(Geodesic, FailureSaysWhyAndWhatToTry) {
+  GeodesicOptions options;
+  options.starts = 1;  // the straight line, which collapses
+  const std::string collapsed = failure(test::vehicle({0, 0, 0, 0}, {0, 1e-13, 0, 0}), options);
+  EXPECT_NE(collapsed.find("collapsed"), std::string::npos) << collapsed;
+  EXPECT_NE(collapsed.find("try more --starts"), std::string::npos) << collapsed;
+  options = {};
+  options.max_length = 2;
+  const std::string longer = failure(test::unicycle({0, 0, 0}, {0, 1, 0}), options);
+  EXPECT_NE(longer.find("length 3.34"), std::string::npos) << longer;
+  options = {};
+  options.tolerance = 1e-22;
+  const std::string unverified = failure(test::sideways(), options);
+  EXPECT_NE(unverified.find("rank 4 of 4 and condition"), std::string::npos) << unverified;
 }
 
 TEST(Geodesic, StopsWhenToldTo) {

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include "carnot/shooting/classification.h"
+#include "carnot/shooting/failure.h"
 #include "carnot/shooting/multiple_shooting.h"
 #include "carnot/shooting/parallel.h"
 #include "carnot/shooting/ranking.h"
@@ -79,34 +79,6 @@ struct Found {
   std::string failure;  // why there is none, of the first image
 };
 
-std::string failure_message(const BoundaryValueProblem& problem,
-                            const Search& search,
-                            const GeodesicOptions& options) {
-  const std::string tried =
-      std::to_string(search.starts()) + (search.starts() == 1 ? " start" : " starts") + " tried";
-  if (!options.guess.empty()) {
-    return "the guess did not lead to an extremal: leave --guess out to search from paths";
-  }
-  double shortest = std::numeric_limits<double>::infinity();
-  for (const Extremal& longer : search.extremals(true)) {
-    shortest = std::min(shortest, longer.geodesic.length.value_or(shortest));
-  }
-  if (std::isfinite(shortest)) {
-    return "the shortest extremal found has the length " + std::to_string(shortest) +
-           ": try a larger --max-length";
-  }
-  if (!problem.segment.has_transcription()) {
-    return "no momentum led to an extremal (" + tried +
-           "): try more --starts, another --seed, a --guess, or a target less far away";
-  }
-  if (!search.any_discrete()) {
-    return "no path relaxed to a discrete extremal (" + tried +
-           "): try more --starts, another --seed, or a target less far away";
-  }
-  return "discrete extremals were found but none could be verified (" + tried +
-         "): try a larger --tolerance or more --starts";
-}
-
 void search_image(const GeodesicOptions& options, Found& found) {
   const BoundaryValueProblem& problem = found.problems.back();
   const int image = static_cast<int>(found.problems.size()) - 1;
@@ -129,7 +101,9 @@ void search_image(const GeodesicOptions& options, Found& found) {
   found.hits.insert(found.hits.end(), hits.begin(), hits.end());
   found.starts += search.starts();
   found.converged += search.converged();
-  if (found.failure.empty()) found.failure = failure_message(problem, search, options);
+  if (found.list.empty() && found.failure.empty()) {
+    found.failure = explain_failure(problem, search, options);
+  }
 }
 
 }  // namespace

@@ -23,7 +23,8 @@ constexpr int kRound = 8;         // starts between two looks at the list
 constexpr int kMinStarts = 16;
 constexpr int kMaxStarts = 96;      // when the best extremal keeps changing
 constexpr int kMaxIntervals = 128;  // of the grids that paths are relaxed on
-constexpr int kArtefacts = 3;    // of a round, that are more than the rest: the grid is too coarse
+constexpr int kArtefacts = 3;  // of a round, that are more than the rest: the grid is too coarse
+constexpr int kMaxStiffness = 2;
 constexpr int kMaxDescents = 4;  // sweeps below an extremal that is no minimum
 constexpr int kMaxStartsAll = 240;
 constexpr int kSweeps = 24;            // rounds of near hits, where more than the best is wanted
@@ -31,6 +32,12 @@ constexpr int kEnoughHits = 3;         // of the least action, before a search f
 constexpr double kRival = 0.02;        // extremals this close to the least action, relative,
 constexpr int kConvergedPerRival = 5;  // make the search longer: there may be another
 constexpr double kSameDiscreteAction = 1e-6;
+
+double largest_momentum(const Path& path) {
+  double largest = std::numeric_limits<double>::min();
+  for (const double p : path.p) largest = std::max(largest, std::abs(p));
+  return largest;
+}
 
 }  // namespace
 
@@ -91,6 +98,14 @@ bool Search::lacks() const {
   return options_.all || static_cast<int>(extremals_.size()) < options_.count;
 }
 
+const Path* Search::nearest_discrete() const {
+  const auto least = std::min_element(
+      discrete_.begin(), discrete_.end(), [](const Discrete& a, const Discrete& b) {
+        return a.action < b.action;
+      });
+  return least == discrete_.end() ? nullptr : &least->path;
+}
+
 std::size_t Search::best() const {
   const auto least = std::min_element(
       extremals_.begin(), extremals_.end(), [](const Extremal& a, const Extremal& b) {
@@ -121,6 +136,13 @@ void Search::relax_round(int count) {
   parallel_for(count, threads_, [&](int i) { candidates[i] = relax_start(starts_ + i); });
   const Polished polished = absorb(candidates);
   const bool artefacts = polished.failed >= kArtefacts && polished.failed > polished.good;
+  int stiffer = 0;
+  int found = 0;
+  for (const Candidate& candidate : candidates) {
+    found += candidate.found ? 1 : 0;
+    stiffer += candidate.found && candidate.stiffness > 0 ? 1 : 0;
+  }
+  if (2 * stiffer > found && stiffness_ < kMaxStiffness) ++stiffness_;
   if (artefacts) intervals_ = std::min(2 * intervals_, kMaxIntervals);
 }
 
@@ -183,6 +205,7 @@ Search::Polished Search::absorb(const std::vector<Candidate>& candidates) {
   std::vector<const Path*> fresh;
   std::vector<std::size_t> fresh_index;
   for (const Candidate& candidate : candidates) {
+    if (candidate.residual < least_residual_) least_residual_ = candidate.residual;
     if (!candidate.found) continue;
     const std::size_t known = find_discrete(candidate.path);
     if (known < discrete_.size()) {
@@ -216,17 +239,22 @@ Search::Candidate Search::relax_start(int i) const {
   // Collapsed to the straight line, which violates the constraints, or on the way there: a stiffer
   // penalty holds the path.
   constexpr double kCollapsed = 0.5;
+  constexpr double kHeld = 0.02;
   constexpr int kAttempts = 3;
   constexpr double kStiffer = 8;
   const BoundaryValueProblem easy = easy_ > 1 ? stretched(problem_, easy_) : problem_;
   const Start start = make_start(easy, options_.seed, i, intervals_);
   RelaxationOptions relaxation = start.relaxation;
   Candidate candidate;
-  for (int attempt = 0; attempt < kAttempts; ++attempt, relaxation.penalty *= kStiffer) {
+  relaxation.penalty *= std::pow(kStiffer, stiffness_);
+  for (; candidate.stiffness < kAttempts; ++candidate.stiffness, relaxation.penalty *= kStiffer) {
     candidate.path = start.path;
-    if (!(relax(easy, relaxation, candidate.path).violation < kCollapsed)) continue;
-    candidate.found = tighten(easy, {}, candidate.path).converged;
-    if (candidate.found) break;
+    const double violation = relax(easy, relaxation, candidate.path).violation;
+    if (!(violation < kCollapsed)) continue;
+    const DiscreteNewton tightened = tighten(easy, {}, candidate.path);
+    candidate.found = tightened.converged;
+    candidate.residual = tightened.residual / largest_momentum(candidate.path);
+    if (candidate.found || violation < kHeld || candidate.stiffness > 0) break;
   }
   if (candidate.found && easy_ > 1) candidate.found = shrink(problem_, easy_, candidate.path);
   return candidate;

@@ -5,6 +5,7 @@
 // list, so it does not depend on the number of threads.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -37,7 +38,10 @@ class Search {
   [[nodiscard]] std::vector<int> hits() const;
   [[nodiscard]] int starts() const { return starts_; }
   [[nodiscard]] int converged() const { return converged_; }
-  [[nodiscard]] bool any_discrete() const { return !discrete_.empty(); }
+  // The discrete extremal of least action; null where there is none. And the least residual that a
+  // path was tightened to, relative to its momenta.
+  [[nodiscard]] const Path* nearest_discrete() const;
+  [[nodiscard]] double least_residual() const { return least_residual_; }
 
  private:
   static constexpr int kNone = -1;
@@ -46,6 +50,8 @@ class Search {
   // A relaxed path that satisfies the discrete equations.
   struct Candidate {
     bool found = false;
+    int stiffness = 0;  // how often the penalty had to be raised
+    double residual = std::numeric_limits<double>::infinity();  // relative to the momenta
     Path path;
   };
 
@@ -97,10 +103,12 @@ class Search {
   std::vector<Extremal> extremals_;
   std::vector<int> hits_;
   std::vector<int> partner_of_;  // the extremal whose mirror image it is, or kNone
+  int stiffness_ = 0;            // how often most starts of a round had to raise the penalty
   int intervals_ = 32;           // of the grid that paths are relaxed on
   double easy_ = 1;              // relaxation aims at a target this many times further away
   bool descends_ = false;        // the best extremal so far is no minimum
   std::vector<Discrete> discrete_;
+  double least_residual_ = std::numeric_limits<double>::infinity();
   int starts_ = 0;
   int converged_ = 0;
 };
