@@ -21,13 +21,13 @@ double doubt_of(const BoundaryValueProblem& problem, const Geodesic& geodesic) {
   return distance > 0 ? std::max(kLeast, kMargin * geodesic.endpoint_error / distance) : kLeast;
 }
 
-// The largest |value(q)| along the path: at the nodes, and of the parabola through the best three.
+// The largest |value(q)| along the path: of samples, and of the parabola through the best three.
 void add_extremes(const BoundaryValueProblem& problem,
                   const Knots& knots,
                   long steps,
                   Geodesic& geodesic) {
   if (problem.segment.info.extremes.empty()) return;
-  const Trajectory fine = survey(problem, knots, steps, steps + 1).trajectory;
+  const Trajectory fine = survey(problem, knots, steps, 2 * steps + 1).trajectory;
   for (const Extreme& extreme : problem.segment.info.extremes) {
     std::vector<double> size;
     for (const auto& q : fine.q) size.push_back(std::abs(extreme.value(q.data())));
