@@ -6,7 +6,7 @@
 set -eu
 
 std='[a-z_]+'
-posix='(fcntl|poll|signal|spawn|unistd)\.h|sys/[a-z]+\.h'
+posix='(fcntl|poll|sched|signal|spawn|unistd)\.h|sys/[a-z]+\.h'
 eigen='Eigen/[A-Za-z]+'
 core='carnot/[a-z0-9_]+\.h'
 scenes='carnot/scenes/[a-z0-9_]+\.h'
@@ -37,7 +37,12 @@ broken() {
   only "$std|$posix|$eigen|gnuplot-iostream\.h|$core|carnot/plots/[a-z0-9_]+\.h" plots
   own=$(find apps -name '*.h' | sed 's:.*/::; s:\.:\\.:' | tr '\n' '|')
   libraries='CLI/[A-Za-z]+\.hpp|nlohmann/[a-z_]+\.hpp|fmt/[a-z]+\.h'
-  only "$std|$posix|$eigen|$libraries|${own}version\.h|carnot/[a-z0-9_/]+\.h" apps
+  quad='boost/multiprecision/(eigen|float128)\.hpp'
+  peers='boost/numeric/odeint[a-z0-9_/]*\.hpp|gsl/[a-z0-9_]+\.h|[a-z]+/[a-z]+_[a-z]+\.h|(cvode|ida)/[a-z]+\.h|benchmark/benchmark\.h'
+  only "$std|$posix|$eigen|$libraries|$quad|${own}version\.h|carnot/[a-z0-9_/]+\.h" \
+    $(find apps -maxdepth 1 -type f)
+  [ ! -d apps/peers ] ||
+    only "$std|$posix|$eigen|$peers|${own}carnot/[a-z0-9_/]+\.h" apps/peers
   umbrellas lib shooting plots
 }
 
