@@ -14,10 +14,10 @@ namespace {
 
 // Throws std::runtime_error when a file cannot be made.
 void write_files(const Result& result, const Destination& destination, const std::string& json) {
-  const bool csv = has_ending(destination.output, ".csv");
-  if (!destination.output.empty() && !csv) write_file(destination.output, json);
+  const bool other = !destination.output.empty() && !has_ending(destination.output, ".json");
+  if (!destination.output.empty() && !other) write_file(destination.output, json);
   if (!result.delivered) return;
-  if (csv) write_file(destination.output, result.csv());
+  if (other) write_file(destination.output, result.csv());
   if (destination.plot.empty()) return;
   const std::string warnings = result.draw(destination.plot);
   if (!warnings.empty()) complain(warnings);

@@ -18,7 +18,7 @@ struct Result {
   bool delivered = true;  // false: only the JSON is written, and the exit status is 1
   std::string message;    // why not
   Json json;
-  std::function<std::string()> csv;
+  std::function<std::string()> csv;                     // or what else --output is to hold
   std::function<std::string()> text;                    // for people
   std::function<std::string(const std::string&)> draw;  // makes the plot file; warnings
 };

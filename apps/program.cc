@@ -96,6 +96,7 @@ void build(CLI::App& app, Invocation& invocation) {
   add_methods(app, invocation);
   add_verify(app, invocation);
   add_paper(app, invocation);
+  add_benchmark(app, invocation);
   app.require_subcommand(0, 1);
 }
 

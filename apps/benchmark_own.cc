@@ -1,0 +1,212 @@
+// The methods of this program on a benchmark trajectory, all through Segment.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "benchmark_contest.h"
+#include "scene_choice.h"
+#include "step_choice.h"
+
+namespace carnot::apps {
+namespace {
+
+constexpr long kBatch = 64;
+
+// What is known of a trajectory whose steps were chosen.
+struct ChosenFlow {
+  bool completed = false;
+  std::string message;
+  long count = 0;
+  long evaluations = 0;
+};
+
+// From a tolerance alone to the end point, in place.
+ChosenFlow flow_by_tolerance(const Segment& segment,
+                             double duration,
+                             double tolerance,
+                             std::vector<double>& z) {
+  const StepChoice choice = choose_steps(segment, 0, duration, z, tolerance);
+  if (choice.status != StepChoiceStatus::kOk) return {false, choice.message, choice.count, 0};
+  const FlowReport report = segment.flow(StepPlan::equal(0, duration, choice.count), z.data());
+  return {report.completed(),
+          std::string(report.reason()),
+          choice.count,
+          choice.evaluations + report.evaluations};
+}
+
+// Many trajectories in place, one (q, p) after the other. Evaluations of all; negative on failure.
+double flow_many(const Segment& segment, const StepPlan& plan, long count, std::vector<double>& z) {
+  double evaluations = 0;
+  for (long i = 0; i < count; ++i) {
+    const FlowReport report = segment.flow(plan, z.data() + 2 * segment.dof * i);
+    if (!report.completed()) return -1;
+    evaluations += static_cast<double>(report.evaluations);
+  }
+  return evaluations;
+}
+
+void keep(const std::vector<double>& z, std::size_t size, BenchmarkEnd& end) {
+  std::copy_n(z.begin(), size, end.z.begin());
+}
+
+BenchmarkWatch watch_plan(const Segment& segment, const StepPlan& plan, std::vector<double> z) {
+  const FlowSummary summary = segment.audited_flow(plan, z.data(), {});
+  return {summary.energy_drift, std::string(summary.report.reason())};
+}
+
+Contestant by_steps(const Segment& segment, const BenchmarkProblem& problem, long count) {
+  const StepPlan plan = StepPlan::equal(0, problem.trajectory.duration, count);
+  Contestant contestant;
+  contestant.method = segment.method;
+  contestant.step_or_tolerance = plan.step;
+  contestant.run = [segment, plan, start = problem.start, z = problem.start]() mutable {
+    z = start;
+    const FlowReport report = segment.flow(plan, z.data());
+    BenchmarkEnd end;
+    end.completed = report.completed();
+    end.evaluations = static_cast<double>(report.evaluations);
+    keep(z, z.size(), end);
+    return end;
+  };
+  contestant.watch = [segment, plan, start = problem.start] {
+    return watch_plan(segment, plan, start);
+  };
+  return contestant;
+}
+
+Contestant by_tolerance(const Segment& segment, const BenchmarkProblem& problem, double tolerance) {
+  const double duration = problem.trajectory.duration;
+  Contestant contestant;
+  contestant.method = segment.method;
+  contestant.automatic = true;
+  contestant.step_or_tolerance = tolerance;
+  contestant.run = [=, start = problem.start, z = problem.start]() mutable {
+    z = start;
+    const ChosenFlow flow = flow_by_tolerance(segment, duration, tolerance, z);
+    BenchmarkEnd end;
+    end.completed = flow.completed;
+    end.evaluations = static_cast<double>(flow.evaluations);
+    keep(z, z.size(), end);
+    return end;
+  };
+  contestant.watch = [=, start = problem.start]() -> BenchmarkWatch {
+    std::vector<double> z = start;
+    const ChosenFlow flow = flow_by_tolerance(segment, duration, tolerance, z);
+    if (!flow.completed) return {0, flow.message};
+    return watch_plan(segment, StepPlan::equal(0, duration, flow.count), start);
+  };
+  return contestant;
+}
+
+// The first trajectory is the one of the problem, the others differ by up to a percent in p.
+Contestant in_a_batch(const Segment& segment, const BenchmarkProblem& problem, long count) {
+  constexpr double kSpread = 1e-2;
+  Contestant contestant = by_steps(segment, problem, count);
+  contestant.mode = "batch";
+  contestant.trajectories = kBatch;
+  std::vector<double> starts;
+  for (long i = 0; i < kBatch; ++i) {
+    const double factor = 1 + kSpread * static_cast<double>(i) / kBatch;
+    for (std::size_t k = 0; k < problem.start.size(); ++k) {
+      const bool momentum = k >= problem.start.size() / 2;
+      starts.push_back(problem.start[k] * (momentum ? factor : 1));
+    }
+  }
+  const StepPlan plan = StepPlan::equal(0, problem.trajectory.duration, count);
+  contestant.run = [=, size = problem.start.size(), z = starts]() mutable {
+    z = starts;
+    const double evaluations = flow_many(segment, plan, kBatch, z);
+    BenchmarkEnd end;
+    end.completed = evaluations >= 0;
+    end.evaluations = evaluations / kBatch;
+    keep(z, size, end);
+    return end;
+  };
+  return contestant;
+}
+
+// `rungs` numbers of steps from `first` on, each `factor` times the one before. `first` is of a
+// duration of ten; Heisenberg's problem turns about as often per unit of time.
+struct StepLadder {
+  const char* method;
+  double first;
+  double factor;
+  int rungs;
+};
+
+constexpr double kRootTwo = 1.4142135623730951;
+constexpr StepLadder kLadders[] = {{"midpoint", 50, 2, 8},
+                                   {"gauss4", 20, 2, 7},
+                                   {"lobatto8", 12, kRootTwo, 9},
+                                   {"gauss8", 12, kRootTwo, 9},
+                                   {"gauss12", 8, 1.25, 10},
+                                   {"gauss16", 8, 1.15, 12},
+                                   {"dop853", 20, kRootTwo, 9}};
+constexpr const char* kAutomaticCoarse[] = {"gauss8", "gauss12"};
+constexpr const char* kDefault = "gauss16";
+constexpr const char* kBatched[] = {"gauss16", "dop853"};
+
+std::vector<long> counts_of(const StepLadder& ladder, double duration, bool quick) {
+  std::vector<long> counts;
+  for (int i = 0; i < ladder.rungs; ++i) {
+    if (quick && i != ladder.rungs / 3 && i != ladder.rungs / 2) continue;
+    counts.push_back(std::lround(ladder.first * duration / 10 * std::pow(ladder.factor, i)));
+  }
+  return counts;
+}
+
+}  // namespace
+
+std::vector<double> BenchmarkLadder::tolerances(int per_decade, int digits) const {
+  constexpr int kLargest = -2;
+  if (quick) return {1e-5, 1e-9};
+  std::vector<double> values;
+  for (int i = per_decade * kLargest; i >= -per_decade * digits; --i) {
+    values.push_back(std::pow(10.0, static_cast<double>(i) / per_decade));
+  }
+  return values;
+}
+
+BenchmarkProblem benchmark_problem(const BenchmarkTrajectory& trajectory) {
+  const Segment segment = find_scene(trajectory.scene).make({}, kDefault);
+  BenchmarkProblem problem{trajectory, benchmark_start<double>(trajectory), {}};
+  problem.energy = [segment](const double* z) {
+    std::array<double, BenchmarkEnd::kMostSize> q_dot{};
+    std::array<double, BenchmarkEnd::kMostSize> lambda{};
+    return segment.evaluate(0, z, z + segment.dof, q_dot.data(), lambda.data()).hamiltonian;
+  };
+  return problem;
+}
+
+std::vector<Contestant> own_contestants(const BenchmarkProblem& problem,
+                                        const BenchmarkLadder& ladder) {
+  constexpr int kDense = 3;
+  constexpr int kDigits = 13;
+  const SceneEntry& entry = find_scene(problem.trajectory.scene);
+  const auto segment = [&](const char* method) { return entry.make({}, method); };
+  std::vector<Contestant> all;
+  for (const StepLadder& steps : kLadders) {
+    for (const long count : counts_of(steps, problem.trajectory.duration, ladder.quick)) {
+      all.push_back(by_steps(segment(steps.method), problem, count));
+    }
+  }
+  for (const double tolerance : ladder.tolerances(kDense, kDigits)) {
+    all.push_back(by_tolerance(segment(kDefault), problem, tolerance));
+  }
+  for (const char* method : kAutomaticCoarse) {
+    for (const double tolerance : ladder.tolerances(1, kDigits)) {
+      all.push_back(by_tolerance(segment(method), problem, tolerance));
+    }
+  }
+  for (const char* method : kBatched) {
+    for (const StepLadder& steps : kLadders) {
+      if (std::string_view(steps.method) != method) continue;
+      for (const long count : counts_of(steps, problem.trajectory.duration, ladder.quick)) {
+        all.push_back(in_a_batch(segment(method), problem, count));
+      }
+    }
+  }
+  return all;
+}
+
+}  // namespace carnot::apps

@@ -1,0 +1,116 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "command.h"
+
+namespace carnot::apps {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsSupersetOf;
+using ::testing::UnorderedElementsAre;
+
+TEST(Benchmark, HoldsItsContract) {
+  const Sandbox sandbox;
+  const std::string cache = "env XDG_CACHE_HOME=" + (sandbox.directory() / "cache").string();
+  const Outcome outcome = sandbox.run({"benchmark",
+                                       "heisenberg",
+                                       "--quick",
+                                       "--json",
+                                       "--plot",
+                                       "speed.png",
+                                       "--output",
+                                       "speed.md"},
+                                      cache);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  const auto json = outcome.json();
+  EXPECT_THAT(keys(json),
+              ElementsAre("version",
+                          "arguments",
+                          "status",
+                          "message",
+                          "trajectories",
+                          "rows",
+                          "equal_error",
+                          "left_out",
+                          "elapsed_seconds"));
+  EXPECT_EQ(json["status"], "completed");
+  EXPECT_LT(json["trajectories"][0]["reference_agreement"].get<double>(), 1e-20);
+  std::set<std::string> ways;
+  for (const auto& row : json["rows"]) {
+    EXPECT_THAT(keys(row),
+                ElementsAre("scene",
+                            "method",
+                            "mode",
+                            "peer",
+                            "automatic",
+                            "step_or_tolerance",
+                            "error",
+                            "seconds",
+                            "evaluations",
+                            "energy_drift"));
+    EXPECT_EQ(row["scene"], "heisenberg");
+    EXPECT_GT(row["seconds"].get<double>(), 0);
+    EXPECT_GT(row["evaluations"].get<long>(), 0);
+    EXPECT_GE(row["energy_drift"].get<double>(), 0);
+    EXPECT_GT(row["error"].get<double>(), 0);
+    EXPECT_EQ(row["peer"].get<bool>(), row["method"] == "dop853-adaptive");
+    ways.insert(row["method"].get<std::string>() + " " + row["mode"].get<std::string>() +
+                (row["automatic"].get<bool>() ? " automatic" : ""));
+  }
+  EXPECT_THAT(ways,
+              IsSupersetOf({"midpoint single",
+                            "gauss4 single",
+                            "gauss16 single",
+                            "gauss16 single automatic",
+                            "gauss16 batch",
+                            "dop853-adaptive single automatic"}));
+  // A tolerance is kept: the error at the end was estimated.
+  for (const auto& row : json["rows"]) {
+    if (!row["automatic"].get<bool>() || row["peer"].get<bool>()) continue;
+    EXPECT_LT(row["error"].get<double>(), 2 * row["step_or_tolerance"].get<double>());
+  }
+  EXPECT_THAT(sandbox.files(), UnorderedElementsAre("cache", "speed.md", "speed.png"));
+  EXPECT_THAT(read_text(sandbox.directory() / "speed.md"),
+              AllOf(HasSubstr("## heisenberg"), HasSubstr("| gauss16, batch |")));
+  EXPECT_THAT(sandbox.run({"benchmark", "heisenberg", "--quick"}, cache).out,
+              AllOf(HasSubstr("least error"), HasSubstr("gauss16, steps given")));
+}
+
+TEST(Benchmark, RefusesBadInput) {
+  const std::map<std::vector<std::string>, std::string> cases{
+      {{"benchmark", "vehicel"}, "did you mean vehicle?"},
+      {{"benchmark", "unicycle"}, "vehicle-cosine, vehicle, heisenberg"},
+      {{"benchmark", "vehicle", "vehicle"}, "given twice"},
+      {{"benchmark", "--plot", "speed.txt"}, "--plot"},
+      {{"benchmark", "--output", "speed.csv"}, "--output"}};
+  for (const auto& [arguments, message] : cases) {
+    const Sandbox sandbox;
+    const Outcome outcome = sandbox.run(arguments);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_THAT(outcome.err, HasSubstr(message));
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
+    EXPECT_THAT(sandbox.files(), ElementsAre());
+  }
+}
+
+TEST(Benchmark, SaysHowToGetPeers) {
+#ifdef CARNOT_PEERS
+  GTEST_SKIP() << "this build has them";
+#endif
+  const Outcome outcome = run({"benchmark", "--peers"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("--peers"), HasSubstr("-D CARNOT_PEERS=ON")));
+}
+
+}  // namespace
+}  // namespace carnot::apps
