@@ -17,9 +17,21 @@
 #include "output_file.h"
 #include "progress_bar.h"
 #include "subcommands.h"
+#ifdef CARNOT_PEERS
+#include "peers/peers.h"
+#endif
 
 namespace carnot::apps {
 namespace {
+
+#ifdef CARNOT_PEERS
+constexpr bool kWithPeers = true;
+#else
+constexpr bool kWithPeers = false;
+std::vector<Contestant> peer_contestants(const BenchmarkProblem&, const BenchmarkLadder&) {
+  return {};
+}
+#endif
 
 constexpr const char* kFooter = R"(
 The trajectories are vehicle-cosine and vehicle from q = (1, 0.5, 0.3, 0.8) with front wheel speed
@@ -82,7 +94,7 @@ void check_destination(const Destination& destination) {
 }
 
 void check_peers(bool wanted) {
-  if (!wanted) return;
+  if (!wanted || kWithPeers) return;
   throw std::invalid_argument(
       "--peers: this program was built without them; accepted: a build configured with "
       "-D CARNOT_PEERS=ON (packages: scripts/packages-peers.txt)");
@@ -95,6 +107,7 @@ std::vector<Contestant> contestants_of(const BenchmarkProblem& problem, const Op
     std::move(more.begin(), more.end(), std::back_inserter(all));
   };
   add(contrast_contestants(problem, ladder));
+  if (options.peers) add(peer_contestants(problem, ladder));
   return all;
 }
 

@@ -47,14 +47,9 @@ std::vector<Contestant> contrast_contestants(const BenchmarkProblem& problem,
   constexpr int kDense = 3;
   std::vector<Contestant> all;
   for (const double tolerance : ladder.local_tolerances(kDense)) {
-    const std::string_view scene = problem.trajectory.scene;
-    if (scene == "vehicle-cosine") {
-      all.push_back(contestant<VehicleCosineRate>(problem, tolerance));
-    } else if (scene == "vehicle") {
-      all.push_back(contestant<VehicleRate>(problem, tolerance));
-    } else {
-      all.push_back(contestant<HeisenbergRate>(problem, tolerance));
-    }
+    all.push_back(with_rate(problem.trajectory.scene, [&](auto rate) {
+      return contestant<decltype(rate)>(problem, tolerance);
+    }));
   }
   return all;
 }

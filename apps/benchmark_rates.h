@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <string_view>
 #include <utility>
 
 namespace carnot::apps {
@@ -75,8 +76,23 @@ struct VehicleRate {
   }
 };
 
-// The same with V = -cos r, r^2 = |m|^2, m = (x - cos(theta)/2, y - sin(theta)/2): grad V is
-// sin(r)/r times m . dm/dq.
+// grad V of V = -cos r, r^2 = |m|^2, m = (x - cos(theta)/2, y - sin(theta)/2): sin(r)/r m . dm/dq.
+struct PotentialSlope {
+  double x;
+  double y;
+  double theta;
+};
+
+inline PotentialSlope vehicle_cosine_slope(const double* q, SineCosine theta) {
+  constexpr double kTiny = 1e-300;  // r > 0 without a branch: sin(r)/r is 1 there
+  const double mx = q[0] - 0.5 * theta.cosine;
+  const double my = q[1] - 0.5 * theta.sine;
+  const double r = std::sqrt(mx * mx + my * my + kTiny);
+  const double slope = sine_cosine(r).sine / r;
+  return {slope * mx, slope * my, 0.5 * slope * (mx * theta.sine - my * theta.cosine)};
+}
+
+// The same in this potential.
 struct VehicleCosineRate {
   static constexpr int kSize = 8;
 
@@ -86,14 +102,10 @@ struct VehicleCosineRate {
     const SineCosine delta{phi.sine * theta.cosine - phi.cosine * theta.sine,
                            phi.cosine * theta.cosine + phi.sine * theta.sine};
     VehicleRate::with_angles(z, phi, delta, f);
-    const double mx = z[0] - 0.5 * theta.cosine;
-    const double my = z[1] - 0.5 * theta.sine;
-    constexpr double kTiny = 1e-300;  // r > 0 without a branch: sin(r)/r is 1 there
-    const double r = std::sqrt(mx * mx + my * my + kTiny);
-    const double slope = sine_cosine(r).sine / r;
-    f[4] -= slope * mx;
-    f[5] -= slope * my;
-    f[6] -= 0.5 * slope * (mx * theta.sine - my * theta.cosine);
+    const PotentialSlope slope = vehicle_cosine_slope(z, theta);
+    f[4] -= slope.x;
+    f[5] -= slope.y;
+    f[6] -= slope.theta;
   }
 };
 
@@ -112,5 +124,13 @@ struct HeisenbergRate {
     f[5] = 0;
   }
 };
+
+// visit(rate) with the right-hand side of a scene of benchmark_trajectory.h.
+template <class Visit>
+auto with_rate(std::string_view scene, Visit&& visit) {
+  if (scene == "vehicle-cosine") return visit(VehicleCosineRate{});
+  if (scene == "vehicle") return visit(VehicleRate{});
+  return visit(HeisenbergRate{});
+}
 
 }  // namespace carnot::apps

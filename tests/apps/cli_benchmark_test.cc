@@ -102,15 +102,34 @@ TEST(Benchmark, RefusesBadInput) {
   }
 }
 
-TEST(Benchmark, SaysHowToGetPeers) {
 #ifdef CARNOT_PEERS
-  GTEST_SKIP() << "this build has them";
-#endif
+// Every library arrives, with an error that falls with the tolerance.
+TEST(Benchmark, RunsPeers) {
+  for (const std::string scene : {"vehicle", "vehicle-cosine", "heisenberg"}) {
+    const auto json = run({"benchmark", scene, "--peers", "--quick", "--json"}).json();
+    std::map<std::string, std::vector<double>> errors;
+    for (const auto& row : json["rows"]) {
+      if (row["peer"].get<bool>()) {
+        errors[row["method"].get<std::string>()].push_back(row["error"].get<double>());
+      }
+    }
+    EXPECT_THAT(json["left_out"], ElementsAre());
+    EXPECT_EQ(errors.size(), 10);
+    for (const auto& [method, of_method] : errors) {
+      ASSERT_EQ(of_method.size(), 2) << method;
+      constexpr double kFall = 100;  // of at least 1e4 / 100 when the tolerance falls by 1e4
+      EXPECT_LT(of_method[1], of_method[0] / kFall) << method << " on " << scene;
+    }
+  }
+}
+#else
+TEST(Benchmark, SaysHowToGetPeers) {
   const Outcome outcome = run({"benchmark", "--peers"});
   EXPECT_EQ(outcome.status, 2);
   EXPECT_EQ(outcome.out, "");
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("--peers"), HasSubstr("-D CARNOT_PEERS=ON")));
 }
+#endif
 
 }  // namespace
 }  // namespace carnot::apps

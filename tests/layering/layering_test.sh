@@ -35,14 +35,14 @@ broken() {
   only "$sees|$scenes" lib/carnot/scenes
   only "$std|$eigen|ceres/[a-z_]+\.h|nlopt\.hp*|$core|carnot/shooting/[a-z0-9_]+\.h" shooting
   only "$std|$posix|$eigen|gnuplot-iostream\.h|$core|carnot/plots/[a-z0-9_]+\.h" plots
-  own=$(find apps -name '*.h' | sed 's:.*/::; s:\.:\\.:' | tr '\n' '|')
+  own=$(find apps -name '*.h' | sed 's:^apps/::; s:\.:\\.:' | tr '\n' '|')
   libraries='CLI/[A-Za-z]+\.hpp|nlohmann/[a-z_]+\.hpp|fmt/[a-z]+\.h'
   quad='boost/multiprecision/(eigen|float128)\.hpp'
-  peers='boost/numeric/odeint[a-z0-9_/]*\.hpp|gsl/[a-z0-9_]+\.h|[a-z]+/[a-z]+_[a-z]+\.h|(cvode|ida)/[a-z]+\.h|benchmark/benchmark\.h'
   only "$std|$posix|$eigen|$libraries|$quad|${own}version\.h|carnot/[a-z0-9_/]+\.h" \
     $(find apps -maxdepth 1 -type f)
-  [ ! -d apps/peers ] ||
-    only "$std|$posix|$eigen|$peers|${own}carnot/[a-z0-9_/]+\.h" apps/peers
+  peers='boost/numeric/odeint/[a-z0-9_/]+\.hpp|gsl/[a-z0-9_]+\.h|benchmark/benchmark\.h'
+  peers="$peers|(cvode|ida|nvector|sundials|sunlinsol|sunmatrix|sunnonlinsol)/[a-z_]+\.h"
+  [ ! -d apps/peers ] || only "$std|$peers|${own}$core|$scenes" apps/peers
   umbrellas lib shooting plots
 }
 
@@ -97,6 +97,9 @@ must_fail plots/carnot/plots/bad.h '<ceres/ceres.h>'
 must_fail apps/bad.cc '<gnuplot-iostream.h>'
 must_fail apps/bad.cc '<ceres/ceres.h>'
 must_fail apps/bad.cc '<nlopt.h>'
+must_fail apps/bad.cc '<gsl/gsl_odeiv2.h>'
+mkdir apps/peers
+must_fail apps/peers/bad.cc '<fmt/format.h>'
 printf '%s\n' '#pragma once' '// Everything.' '#include "carnot/flow.h"' >lib/carnot/carnot.h
 [ -n "$(broken)" ] || fail 'Not noticed: an umbrella header'
 
