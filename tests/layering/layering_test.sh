@@ -42,7 +42,9 @@ broken() {
     $(find apps -maxdepth 1 -type f)
   peers='boost/numeric/odeint/[a-z0-9_/]+\.hpp|gsl/[a-z0-9_]+\.h|benchmark/benchmark\.h'
   peers="$peers|(cvode|ida|nvector|sundials|sunlinsol|sunmatrix|sunnonlinsol)/[a-z_]+\.h"
-  [ ! -d apps/peers ] || only "$std|$peers|${own}$core|$scenes" apps/peers
+  for folder in apps/peers apps/micro; do
+    [ ! -d $folder ] || only "$std|$peers|${own}$core|$scenes" $folder
+  done
   umbrellas lib shooting plots
 }
 

@@ -1,0 +1,130 @@
+// carnot_micro: nanoseconds of the pieces that `carnot benchmark` measures as a whole.
+//
+// rate/...     the right-hand side by hand: latency, where each call waits for the one before, as
+// in
+//              an explicit method; throughput, where it does not, as over many trajectories
+// scene/...    the same by the formulas of the scene
+// step/...     one step of a method
+// peer/...     one accepted step of DOP853 with step control
+#include <benchmark/benchmark.h>
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "benchmark_dop853.h"
+#include "benchmark_rates.h"
+#include "benchmark_trajectory.h"
+#include "carnot/phase_space.h"
+#include "carnot/scenes/heisenberg.h"
+#include "carnot/scenes/vehicle.h"
+#include "carnot/scenes/vehicle_cosine.h"
+#include "carnot/system_of.h"
+#include "scene_choice.h"
+
+namespace carnot::apps {
+namespace {
+
+// Adding this much of the result changes nothing, but the compiler does not know.
+constexpr double kNothing = 1e-300;
+
+template <class Rate>
+void rate_latency(benchmark::State& state, const BenchmarkTrajectory& trajectory) {
+  std::vector<double> z = benchmark_start<double>(trajectory);
+  std::array<double, Rate::kSize> f{};
+  for (auto _ : state) {
+    Rate{}(z.data(), f.data());
+    for (std::size_t i = 0; i < f.size(); ++i) z[i] += kNothing * f[i];
+  }
+  benchmark::DoNotOptimize(z.data());
+}
+
+template <class Rate>
+void rate_throughput(benchmark::State& state, const BenchmarkTrajectory& trajectory) {
+  const std::vector<double> z = benchmark_start<double>(trajectory);
+  std::array<double, Rate::kSize> f{};
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(z.data());
+    benchmark::ClobberMemory();
+    Rate{}(z.data(), f.data());
+    benchmark::DoNotOptimize(f.data());
+  }
+}
+
+template <class Scene>
+void scene_latency(benchmark::State& state, const BenchmarkTrajectory& trajectory) {
+  constexpr int kSize = 2 * Scene::kDof;
+  const auto system = make_system(Scene{});
+  const std::vector<double> start = benchmark_start<double>(trajectory);
+  Vector<double, kSize> z = Eigen::Map<const Vector<double, kSize>>(start.data());
+  Vector<double, decltype(system)::kAlgebraic> y = decltype(y)::Zero();
+  Vector<double, kSize> f;
+  for (auto _ : state) {
+    if (phase_rate(system, 0.0, z, y, f) != RateStatus::kOk) state.SkipWithError("no rate");
+    z += kNothing * f;
+  }
+  benchmark::DoNotOptimize(z.data());
+}
+
+void method_step(benchmark::State& state,
+                 const BenchmarkTrajectory& trajectory,
+                 const std::string& method) {
+  constexpr double kStep = 0.1;
+  const Segment segment = find_scene(trajectory.scene).make({}, method);
+  const std::vector<double> start = benchmark_start<double>(trajectory);
+  const StepPlan plan = StepPlan::of_length(0, trajectory.duration, kStep);
+  std::vector<double> z;
+  for (auto _ : state) {
+    z = start;
+    if (!segment.flow(plan, z.data()).completed()) state.SkipWithError("a step failed");
+  }
+  const double steps = static_cast<double>(state.iterations()) * static_cast<double>(plan.count);
+  state.counters["per_step"] =
+      benchmark::Counter(steps, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+template <class Rate>
+void dop853_step(benchmark::State& state, const BenchmarkTrajectory& trajectory) {
+  constexpr double kTolerance = 1e-10;
+  const std::vector<double> start = benchmark_start<double>(trajectory);
+  std::vector<double> z;
+  long steps = 0;
+  for (auto _ : state) {
+    z = start;
+    steps += AdaptiveDop853<Rate>({}, kTolerance).run(trajectory.duration, z.data()).steps;
+  }
+  state.counters["per_step"] = benchmark::Counter(
+      static_cast<double>(steps), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+template <class Scene, class Rate>
+void add_scene(const BenchmarkTrajectory& trajectory) {
+  const std::string scene(trajectory.scene);
+  const auto add = [&](const std::string& name, auto run) {
+    benchmark::RegisterBenchmark((name + "/" + scene).c_str(), run);
+  };
+  add("rate/latency", [=](auto& state) { rate_latency<Rate>(state, trajectory); });
+  add("rate/throughput", [=](auto& state) { rate_throughput<Rate>(state, trajectory); });
+  add("scene/latency", [=](auto& state) { scene_latency<Scene>(state, trajectory); });
+  for (const std::string method : {"midpoint", "gauss8", "gauss16", "dop853"}) {
+    add("step/" + method, [=](auto& state) { method_step(state, trajectory, method); });
+  }
+  add("peer/dop853-adaptive", [=](auto& state) { dop853_step<Rate>(state, trajectory); });
+}
+
+}  // namespace
+}  // namespace carnot::apps
+
+int main(int argc, char** argv) {
+  const auto& trajectories = carnot::apps::benchmark_trajectories();
+  carnot::apps::add_scene<carnot::scenes::VehicleCosine, carnot::apps::VehicleCosineRate>(
+      trajectories[0]);
+  carnot::apps::add_scene<carnot::scenes::Vehicle, carnot::apps::VehicleRate>(trajectories[1]);
+  carnot::apps::add_scene<carnot::scenes::Heisenberg, carnot::apps::HeisenbergRate>(
+      trajectories[2]);
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+}
