@@ -43,6 +43,9 @@ Their ends are computed in quadruple precision, twice, and kept in $XDG_CACHE_HO
   batch        many trajectories at once; times are those of one
   dop853-adaptive  the explicit method of order 8 with step control, right-hand side written by
                hand and inlined: what the ratios are told against
+  --peers      with the same right-hand side: gsl-rk8pd, gsl-rkf45, gsl-msadams, odeint-rkf78,
+               odeint-dopri5, odeint-bulirsch-stoer, cvode-adams, cvode-bdf; and ida on the
+               differential-algebraic equations in (q, p, v, lambda)
 
 Times are the median CPU time of one trajectory over blocks, in rounds through all the rows of a
 scene, so that times within one run compare.
@@ -154,6 +157,8 @@ int run_benchmark(const Options& options, const std::vector<std::string>& argume
   result.json = result_head(arguments);
   result.json["status"] = result.delivered ? "completed" : "failed";
   result.json["message"] = result.message;
+  result.json["processor"] = processor_name();
+  result.json["compiler"] = __VERSION__;
   add_benchmark_json(scenes, result.json);
   result.json["elapsed_seconds"] = std::chrono::duration<double>(clock() - begin).count();
   result.text = [&] { return benchmark_text(scenes); };

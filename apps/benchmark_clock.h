@@ -8,11 +8,15 @@
 #include <sched.h>
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "carnot/segment.h"
 
 namespace carnot::apps {
+
+// As the machine calls itself; empty where it does not tell.
+[[nodiscard]] std::string processor_name();
 
 // CPU time of the calling thread.
 [[nodiscard]] double thread_seconds();

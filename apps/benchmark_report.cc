@@ -182,9 +182,11 @@ std::string benchmark_text(const std::vector<BenchmarkScene>& scenes) {
 
 std::string benchmark_markdown(const std::vector<BenchmarkScene>& scenes,
                                const std::vector<std::string>& arguments) {
-  std::string text = fmt::format("# carnot {}\n\ncarnot {}\n\n{}.\n",
-                                 arguments.empty() ? "" : arguments.front(),
+  std::string text = fmt::format("# carnot {}\n\ncarnot {}, {}, g++ {}\n\n{}.\n",
+                                 fmt::join(arguments, " "),
                                  kVersion,
+                                 processor_name(),
+                                 __VERSION__,
                                  explanation());
   for (const BenchmarkScene& scene : scenes) {
     text += fmt::format("\n## {}\n\n{}\n\n{}\n{}\n{}",

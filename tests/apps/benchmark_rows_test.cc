@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace carnot::apps {
 namespace {
 
@@ -28,6 +30,57 @@ TEST(BenchmarkCurves, InterpolateTimesAtEqualError) {
   EXPECT_NEAR(*ratio, 0.1, kRoundOff);
   EXPECT_EQ(seconds_at(curves[0], 1e-2), std::nullopt);
   EXPECT_EQ(seconds_at(curves[0], 1e-13), std::nullopt);
+}
+
+// One that ends at (1 + error, 0), or not at all.
+Contestant contestant(const std::string& method, double error, bool completes) {
+  Contestant made;
+  made.method = method;
+  made.run = [=] {
+    BenchmarkEnd end;
+    end.z[0] = 1 + error;
+    end.completed = completes;
+    end.evaluations = 7;
+    return end;
+  };
+  made.watch = [=] { return BenchmarkWatch{0.5, completes ? "" : "it fell"}; };
+  return made;
+}
+
+BenchmarkScene scene_that_ends_at_one() {
+  BenchmarkScene scene;
+  scene.problem.trajectory.scene = "vehicle";
+  scene.reference.digits = {"1", "0"};
+  read_digits(scene.reference);
+  return scene;
+}
+
+TEST(RunContest, TellsErrorsAndFailures) {
+  BenchmarkScene scene = scene_that_ends_at_one();
+  const std::vector<Contestant> contestants{contestant("exact", 0, true),
+                                            contestant("wrong", 0.25, true),
+                                            contestant("fallen", 0, false),
+                                            contestant("infinite", INFINITY, true)};
+  ASSERT_TRUE(run_contest(contestants, {1e-6, 2}, {}, scene));
+  ASSERT_EQ(scene.rows.size(), 2);
+  EXPECT_EQ(scene.rows[0].error, 0);
+  EXPECT_EQ(scene.rows[1].error, 0.25);
+  EXPECT_EQ(scene.rows[1].evaluations, 7);
+  EXPECT_EQ(scene.rows[1].energy_drift, 0.5);
+  EXPECT_GT(scene.rows[1].seconds, 0);
+  ASSERT_EQ(scene.failures.size(), 2);
+  EXPECT_EQ(scene.failures[0].method, "fallen");
+  EXPECT_EQ(scene.failures[0].message, "it fell");
+  EXPECT_EQ(scene.failures[1].method, "infinite");
+}
+
+TEST(RunContest, StopsWhenAsked) {
+  for (const int calls : {0, 1, 2}) {
+    BenchmarkScene scene = scene_that_ends_at_one();
+    int left = calls;
+    const Progress progress = [&left](double) { return left-- > 0; };
+    EXPECT_FALSE(run_contest({contestant("exact", 0, true)}, {1e-6, 2}, progress, scene));
+  }
 }
 
 }  // namespace

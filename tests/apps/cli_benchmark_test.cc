@@ -36,6 +36,8 @@ TEST(Benchmark, HoldsItsContract) {
                           "arguments",
                           "status",
                           "message",
+                          "processor",
+                          "compiler",
                           "trajectories",
                           "rows",
                           "equal_error",
