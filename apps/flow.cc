@@ -22,7 +22,7 @@ p = dL/dq' - G' lambda. --velocity must satisfy the constraints to 1e-9 relative
 projected, and p follows with lambda = 0 or that of --lambda. Angles are radians; pi/2 and -3*pi/4
 are numbers. Units are the scene's own: see `carnot scenes SCENE`.
 Where constraints are not linear in q', one p can have several lambda: --lambda picks the branch.
---tolerance runs trials until N and 2N steps agree; "evaluations" counts the final run only.
+--tolerance chooses equal steps by a cheap trial (gauss16), or runs until N and 2N steps agree; "evaluations" counts the final run only.
 "symplecticity_defect_relative" divides by max(1, |M|^2) with the Frobenius norm of M.
 
 Examples
@@ -71,6 +71,7 @@ bool plan_steps(const FlowRequest& request, FlowOutcome& outcome) {
   outcome.message = choice.message;
   if (choice.status != StepChoiceStatus::kOk) return false;
   outcome.plan = StepPlan::equal(request.start_time, request.time, choice.count);
+  outcome.plan.stop = choice.stop;
   return true;
 }
 

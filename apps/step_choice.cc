@@ -103,6 +103,17 @@ StepChoice choose_steps(const Segment& segment,
                         double tolerance,
                         const Progress& progress) {
   StepChoice choice;
+  if (segment.has_automatic_flow()) {
+    std::vector<double> end = z;
+    const AutomaticFlow run = segment.automatic_flow(start, duration, tolerance, end.data());
+    choice.evaluations += run.evaluations;
+    if (run.reached) {
+      choice.count = run.plan.count;
+      choice.stop = run.plan.stop;
+      choice.error = run.error;
+      return choice;
+    }
+  }
   const Trials trials{segment, start, duration, z, progress, choice};
   double previous = INFINITY;
   double size = 1;  // |z| at the end, as far as known

@@ -1,4 +1,5 @@
-// Steps for a wanted error: doubling tells the error, the order tells the steps.
+// Steps for a wanted error: by the Segment's own trial where it has one (automatic_flow.h), else
+// doubling tells the error and the order tells the steps.
 //
 // With N and 2N steps of a method of order r the end points differ by e = |z_N - z_2N|, and since
 // the error falls like N^-r, that of N is e / (1 - 2^-r). If it is not small enough, the next N is
@@ -17,6 +18,7 @@ enum class StepChoiceStatus { kOk, kNotReached, kStopped };
 struct StepChoice {
   StepChoiceStatus status = StepChoiceStatus::kOk;
   long count = 0;        // equal steps
+  double stop = 0;       // of the stage iteration, as in StepPlan
   double error = 0;      // estimated max-norm of the error of (q, p) at the end
   long evaluations = 0;  // rate() calls of the trial runs
   std::string message;   // why not reached

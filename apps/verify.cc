@@ -8,7 +8,7 @@
 #include <set>
 
 #include "audit_text.h"
-#include "carnot/shooting/parallel.h"
+#include "carnot/parallel.h"
 #include "delivery.h"
 #include "method_table.h"
 #include "nearest.h"

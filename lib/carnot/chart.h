@@ -23,7 +23,7 @@ template <class Scene, class T>
 [[nodiscard]] bool regular_chart(const Scene& scene, const Vector<T, Scene::kDof>& q) {
   if constexpr (HasChart<Scene>) {
     using std::abs;
-    return abs(value_of(scene.chart(q))) > Real<T>(kNearSingularChart);
+    return all(abs(value_of(scene.chart(q))) > Real<T>(kNearSingularChart));
   } else {
     return true;
   }

@@ -25,12 +25,13 @@ template <class T, int n>
   for (int j = 0; j < n; ++j) {
     T pivot = a(j, j);
     for (int k = 0; k < j; ++k) pivot -= lower(j, k) * lower(j, k) * pivots[k];
-    positive = positive && pivot > threshold * a(j, j) && pivot > constant<T>(0);
+    positive = positive && all(pivot > threshold * a(j, j)) && all(pivot > constant<T>(0));
     pivots[j] = pivot;
+    const T inverse = constant<T>(1) / pivot;
     for (int i = j + 1; i < n; ++i) {
       T sum = a(i, j);
       for (int k = 0; k < j; ++k) sum -= lower(i, k) * lower(j, k) * pivots[k];
-      lower(i, j) = sum / pivot;
+      lower(i, j) = sum * inverse;
     }
   }
   return positive;
@@ -40,7 +41,11 @@ template <class T, int n>
 class Cholesky {
  public:
   // Factors the lower triangle of `a`. Cost about n^3 / 6 multiplications, n divisions.
-  explicit Cholesky(const Matrix<T, n, n>& a) : positive_(cholesky_factor(a, lower_, pivots_)) {}
+  explicit Cholesky(const Matrix<T, n, n>& a) {
+    Vector<T, n> pivots;
+    positive_ = cholesky_factor(a, lower_, pivots);
+    for (int i = 0; i < n; ++i) inverses_[i] = constant<T>(1) / pivots[i];
+  }
 
   // False when the matrix is not positive definite to round-off, or not finite.
   [[nodiscard]] bool positive() const { return positive_; }
@@ -50,7 +55,7 @@ class Cholesky {
     for (int i = 1; i < n; ++i) {
       for (int k = 0; k < i; ++k) x[i] -= lower_(i, k) * x[k];
     }
-    for (int i = 0; i < n; ++i) x[i] /= pivots_[i];
+    for (int i = 0; i < n; ++i) x[i] *= inverses_[i];
     for (int i = n - 2; i >= 0; --i) {
       for (int k = i + 1; k < n; ++k) x[i] -= lower_(k, i) * x[k];
     }
@@ -59,7 +64,7 @@ class Cholesky {
 
  private:
   Matrix<T, n, n> lower_;
-  Vector<T, n> pivots_;
+  Vector<T, n> inverses_;  // 1/D: one division a pivot, the slowest of operations
   bool positive_;
 };
 

@@ -19,6 +19,7 @@ struct StepPlan {
   double step = 0;
   double last = 0;
   long count = 0;
+  double stop = 0;  // of the stage iteration, see RungeKutta::stop_at(); 0: round-off
 
   // `count` equal steps over `duration`.
   static StepPlan equal(double start, double duration, long count) {
@@ -65,6 +66,11 @@ struct FlowReport {
   }
 };
 
+template <class Stepper>
+concept CanStopEarly = requires(Stepper& stepper) {
+  stepper.stop_at(typename Stepper::Scalar(0));
+};
+
 // Advances z over the plan. `observe(i, stepper, z)` is called after step i (0-based), while the
 // stepper still holds its stages; it returns false to stop. No allocation of its own.
 template <class Stepper, class Observer>
@@ -75,6 +81,7 @@ FlowReport flow(Stepper& stepper,
   using T = typename Stepper::Scalar;
   FlowReport report;
   report.time_reached = plan.start;
+  if constexpr (CanStopEarly<Stepper>) stepper.stop_at(T(plan.stop));
   for (long i = 0; i < plan.count; ++i) {
     report.last = stepper.step(T(plan.time(i)), T(plan.length(i)), z);
     report.evaluations += report.last.evaluations;

@@ -49,7 +49,7 @@ bool all_finite(const Eigen::MatrixBase<Derived>& a) {
   using std::isfinite;
   bool finite = true;
   for (int i = 0; i < a.rows(); ++i) {
-    for (int j = 0; j < a.cols(); ++j) finite = finite && isfinite(value_of(a(i, j)));
+    for (int j = 0; j < a.cols(); ++j) finite = finite && all(isfinite(value_of(a(i, j))));
   }
   return finite;
 }

@@ -73,6 +73,28 @@ FlowReport tangent_flow(const void* opaque, const StepPlan& plan, double* z, dou
 }
 
 template <class B>
+AutomaticFlow automatic_flow(
+    const void* opaque, double start, double duration, double tolerance, double* z) {
+  const auto stepper = B::from(opaque).stepper();
+  auto state = load<B>(z);
+  const AutomaticFlow result = carnot::automatic_flow(stepper, start, duration, tolerance, state);
+  view<2 * B::n>(z) = state.value;
+  return result;
+}
+
+template <class B>
+BatchReport adaptive_batch(const void* opaque,
+                           double start,
+                           double duration,
+                           double tolerance,
+                           int count,
+                           double* z,
+                           int threads) {
+  return carnot::adaptive_batch(
+      B::from(opaque).system, start, duration, tolerance, count, z, threads);
+}
+
+template <class B>
 FlowSummary audited_flow(const void* opaque,
                          const StepPlan& plan,
                          double* z,
@@ -278,7 +300,11 @@ Segment make_segment(const Scene& scene, std::string_view method_name = default_
     constexpr int kFixed = 8;
     if (tableau.coupling == Coupling::kFull && !tableau.partitioned && tableau.stages() == kFixed) {
       using Stepper = RungeKutta<System, kFixed>;
-      return bind(scene, *method, Bound<Stepper>{std::move(system), fixed_stages<kFixed>(tableau)});
+      using B = Bound<Stepper>;
+      Segment segment = bind(scene, *method, B{std::move(system), fixed_stages<kFixed>(tableau)});
+      segment.calls.automatic_flow = automatic_flow<B>;
+      if constexpr (PacksRates<System>) segment.calls.adaptive_batch = adaptive_batch<B>;
+      return segment;
     }
     return bind(scene, *method, Bound<RungeKutta<System>>{std::move(system), tableau});
   }

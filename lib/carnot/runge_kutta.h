@@ -11,7 +11,11 @@
 // are found by fixed-point iteration, started from the extrapolated collocation polynomial of the
 // last step, or from the stage before. It goes on while for some component the largest change over
 // the stages is still falling (Antonana, Makazaga & Murua 2017), so it ends at round-off whatever
-// the scale of the components. If that is not reached, Newton's method takes over.
+// the scale of the components; or, where a run is asked for a tolerance, until no stage changes by
+// more than stop_at(). If that is not reached, Newton's method takes over.
+//
+// Rates of stages that are found together are evaluated side by side in packs of eight, where the
+// system allows it; where one of them fails, one by one, which tells the reason.
 #pragma once
 
 #include <algorithm>
@@ -19,8 +23,11 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "carnot/lu.h"
+#include "carnot/packed_rate.h"
+#include "carnot/packed_stages.h"
 #include "carnot/phase_space.h"
 #include "carnot/tableau.h"
 
@@ -36,9 +43,12 @@ class RungeKutta {
   static constexpr int kSize = 2 * kDof;
   static constexpr int kMaxStages = s == kAnyStages ? kMostStages : s;
   static constexpr int kMaxCoupled = s == kAnyStages ? kMostCoupledStages : s;
+  static constexpr int kLanes = 8;
+  static constexpr bool kPacks = PacksRates<System> && std::is_same_v<T, double>;
+  static constexpr bool kRows = kPacks && s == kLanes;  // stages lie in memory as packs do
   using Point = Vector<T, kSize>;
   using Algebraic = Vector<T, System::kAlgebraic>;
-  using Stages = Eigen::Matrix<T, kSize, s, 0, kSize, kMaxStages>;  // a column each
+  using Stages = StageRows<T, kSize, s, kMaxStages>;  // a column each
 
   // Keeps references to both.
   RungeKutta(const System& system, const Tableau<T, s>& tableau)
@@ -47,15 +57,23 @@ class RungeKutta {
     assert(tableau.stages() <= (coupled() ? kMaxCoupled : kMaxStages));
     stages_ = Stages::Zero(kSize, tableau.stages());
     increments_ = stages_;
+    algebraic_.resize(System::kAlgebraic, tableau.stages());
     start_on(Algebraic::Zero());
   }
   RungeKutta(const System& system, Tableau<T, s>&& tableau) = delete;  // would dangle
 
   // The branch of H_y = 0 to begin with; zero leaves the choice to the system.
   void start_on(const Algebraic& y) {
-    algebraic_.fill(y);
+    algebraic_.colwise() = y;
     branch_ = y;
     last_step_ = T(0);
+  }
+  // The largest change of a stage, in absolute value, at which the iteration ends; 0: at round-off.
+  void stop_at(T change) { stop_ = change; }
+  // Gives up after so many iterations, without turning to Newton's method.
+  void only_iterate(int most) {
+    most_iterations_ = most;
+    with_newton_ = false;
   }
   // y at the last stage of the last successful step.
   [[nodiscard]] const Algebraic& branch() const { return branch_; }
@@ -87,7 +105,7 @@ class RungeKutta {
     z = end;
     start_time_ = t;
     last_step_ = h;
-    branch_ = algebraic_[count - 1];
+    branch_ = algebraic_.col(count - 1);
     return report;
   }
 
@@ -97,7 +115,7 @@ class RungeKutta {
   [[nodiscard]] const Tableau<T, s>& tableau() const { return tableau_; }
   [[nodiscard]] const Stages& stages() const { return stages_; }
   [[nodiscard]] const Stages& increments() const { return increments_; }
-  [[nodiscard]] Algebraic algebraic(int i) const { return algebraic_[i]; }
+  [[nodiscard]] Algebraic algebraic(int i) const { return algebraic_.col(i); }
   [[nodiscard]] T stage_time(int i) const { return start_time_ + tableau_.c[i] * last_step_; }
   [[nodiscard]] T last_step() const { return last_step_; }
 
@@ -143,6 +161,10 @@ class RungeKutta {
     if (!predict(block, repeated, report)) return;
     if (iterate(block, report)) return;
     // The iteration may have run away, even to where the rate fails: Newton begins again.
+    if (!with_newton_) {
+      if (report.status == StepStatus::kOk) report.status = StepStatus::kStagesDiverged;
+      return;
+    }
     report.status = StepStatus::kOk;
     if (predict(block, false, report)) newton(block, report);
   }
@@ -189,7 +211,7 @@ class RungeKutta {
     const T time = block.t + tableau_.c[i] * block.h;
     const Point u = stages_.col(i);
     Point f;
-    Algebraic y = algebraic_[i];
+    Algebraic y = algebraic_.col(i);
     const RateStatus rate = phase_rate(system_, time, u, y, f);
     ++report.evaluations;
     if (rate != RateStatus::kOk) {
@@ -197,20 +219,85 @@ class RungeKutta {
       return false;
     }
     report.rate = rate;
-    algebraic_[i] = y;
+    algebraic_.col(i) = y;
     increments_.col(i) = (block.h * tableau_.omega[i]) * f;
     return true;
   }
 
+  // The same for all stages of the block.
+  bool evaluate_all(const Block& block, StepReport& report) {
+    if constexpr (kPacks) {
+      if (block.end() - block.begin() > 1) {
+        if (evaluate_packs(block, report)) return true;
+        if (!with_newton_) {
+          fail(RateStatus::kNotFinite, report);
+          return false;
+        }
+      }
+    }
+    for (int i = block.begin(); i < block.end(); ++i) {
+      if (!evaluate(block, i, report)) return false;
+    }
+    return true;
+  }
+
+  // Side by side, eight at a time; idle lanes repeat the last stage. False where a rate fails.
+  bool evaluate_packs(const Block& block, StepReport& report) {
+    constexpr int m = System::kAlgebraic;
+    alignas(64) std::array<double, kLanes> time;
+    alignas(64) std::array<double, m * kLanes> y;
+    for (int first = block.begin(); first < block.end(); first += kLanes) {
+      const int count = std::min(kLanes, block.end() - first);
+      const auto stage_of = [&](int lane) { return first + std::min(lane, count - 1); };
+      if constexpr (!System::kAutonomous) {
+        for (int l = 0; l < kLanes; ++l) time[l] = block.t + tableau_.c[stage_of(l)] * block.h;
+      } else {
+        time.fill(block.t);
+      }
+      if constexpr (kRows) {
+        if (!packed_rate<kLanes>(
+                system_, time.data(), stages_.data(), algebraic_.data(), increments_.data())) {
+          return false;
+        }
+        packed_increments<kSize, s>(block.h, tableau_.omega.data(), increments_.data());
+      } else {
+        alignas(64) std::array<double, kSize * kLanes> z;
+        alignas(64) std::array<double, kSize * kLanes> f;
+        for (int l = 0; l < kLanes; ++l) {
+          for (int k = 0; k < kSize; ++k) z[k * kLanes + l] = stages_(k, stage_of(l));
+        }
+        if (!packed_rate<kLanes>(system_, time.data(), z.data(), y.data(), f.data())) return false;
+        for (int l = 0; l < count; ++l) {
+          const T weight = block.h * tableau_.omega[first + l];
+          for (int k = 0; k < kSize; ++k) increments_(k, first + l) = weight * f[k * kLanes + l];
+          for (int k = 0; k < m; ++k) algebraic_(k, first + l) = y[k * kLanes + l];
+        }
+      }
+      report.evaluations += count;
+    }
+    report.rate = RateStatus::kOk;
+    return true;
+  }
+
   // y of the stage before: for stages that are found one after the other.
-  void warm_start(int i) { algebraic_[i] = i == 0 ? branch_ : algebraic_[i - 1]; }
+  void warm_start(int i) {
+    if (i == 0) {
+      algebraic_.col(0) = branch_;
+    } else {
+      algebraic_.col(i) = algebraic_.col(i - 1);
+    }
+  }
 
   // First guess of the increments: from the last step, where this one repeats its length, or from
   // the rate at the start; of stages that are found one after the other, from the stage before.
   bool predict(const Block& block, bool repeated, StepReport& report) {
     if (coupled()) {
       if (!repeated) return constant_guess(block, report);
-      increments_ = Stages(increments_.lazyProduct(tableau_.extrapolation.transpose()));
+      if constexpr (kRows) {
+        packed_extrapolation<kSize, s>(tableau_.extrapolation.data(), increments_.data());
+      } else {
+        increments_ = Stages(increments_.lazyProduct(tableau_.extrapolation.transpose()));
+      }
       return true;
     }
     const int i = block.first;
@@ -232,25 +319,61 @@ class RungeKutta {
       return false;
     }
     for (int i = block.begin(); i < block.end(); ++i) {
-      algebraic_[i] = y;
+      algebraic_.col(i) = y;
       increments_.col(i) = (block.h * tableau_.omega[i]) * f;
     }
     return true;
   }
 
-  // Fixed point. True when the stages have settled to round-off.
+  // New stages from the increments. Returns their largest change; `change` is that of each
+  // component, where it is asked for.
+  T update_stages(const Block& block, Stages& next, Point* change) {
+    if constexpr (kRows) {
+      return packed_stages<kSize, s>(tableau_.mu.data(),
+                                     block.z.value.data(),
+                                     block.z.compensation.data(),
+                                     increments_.data(),
+                                     stages_.data(),
+                                     change == nullptr ? nullptr : change->data());
+    } else {
+      set_stages(block, next);
+      const Point moved = (block.of(next) - block.of(stages_)).cwiseAbs().rowwise().maxCoeff();
+      if (change != nullptr) *change = moved;
+      block.of(stages_) = block.of(next);
+      return moved.maxCoeff();
+    }
+  }
+
+  // Fixed point. True when the stages have settled.
   bool iterate(const Block& block, StepReport& report) {
+    block.of(stages_).setConstant(std::numeric_limits<T>::max());
+    return stop_ > T(0) ? iterate_to_tolerance(block, report) : iterate_to_round_off(block, report);
+  }
+
+  bool iterate_to_tolerance(const Block& block, StepReport& report) {
+    constexpr T kRunsAway = 4;  // changes that grow by this are not going to settle
+    Stages next = stages_;
+    T limit = std::numeric_limits<T>::infinity();
+    for (int iteration = 0; iteration < most_iterations_; ++iteration) {
+      const T change = update_stages(block, next, nullptr);
+      if (!(change <= limit)) return false;
+      if (!evaluate_all(block, report)) return false;
+      if (change <= stop_) return true;
+      if (iteration == 1) limit = kRunsAway * change;
+    }
+    return false;
+  }
+
+  bool iterate_to_round_off(const Block& block, StepReport& report) {
     constexpr T kFar = std::numeric_limits<T>::max();
     Point smallest = Point::Constant(kFar);
     T last_change = kFar;
     T change_before = kFar;
-    block.of(stages_).setConstant(kFar);
     Stages next = stages_;
+    Point change;
     bool grace = true;
-    for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-      set_stages(block, next);
-      const Point change = (block.of(next) - block.of(stages_)).cwiseAbs().rowwise().maxCoeff();
-      block.of(stages_) = block.of(next);
+    for (int iteration = 0; iteration < most_iterations_; ++iteration) {
+      const T largest = update_stages(block, next, &change);
       bool falling = iteration == 0;
       bool at_rest = true;
       for (int k = 0; k < kSize; ++k) {
@@ -258,11 +381,8 @@ class RungeKutta {
         at_rest = at_rest && change[k] == T(0);
         smallest[k] = std::min(smallest[k], change[k]);
       }
-      for (int i = block.begin(); i < block.end(); ++i) {
-        if (!evaluate(block, i, report)) return false;
-      }
+      if (!evaluate_all(block, report)) return false;
       if (at_rest) return true;
-      const T largest = change.maxCoeff();
       if (!falling) {
         // Where q' depends on p alone and p' on q alone, the errors of q and p take turns, and one
         // of them may be zero by luck: the other one still contracts.
@@ -303,9 +423,7 @@ class RungeKutta {
       const bool stalled = change >= smallest;
       smallest = std::min(smallest, change);
       if (change == T(0) || (stalled && settled(block, Point::Constant(change)))) {
-        for (int i = block.begin(); i < block.end(); ++i) {
-          if (!evaluate(block, i, report)) return;
-        }
+        (void)evaluate_all(block, report);
         return;
       }
     }
@@ -319,8 +437,7 @@ class RungeKutta {
     for (int j = block.begin(); j < block.end(); ++j) {
       if (!evaluate(block, j, report)) return false;
       const T time = block.t + tableau_.c[j] * block.h;
-      const RateStatus rate =
-          phase_jacobian(system_, time, Point(stages_.col(j)), algebraic_[j], a);
+      const RateStatus rate = phase_jacobian(system_, time, Point(stages_.col(j)), algebraic(j), a);
       if (rate != RateStatus::kOk) {
         fail(rate, report);
         return false;
@@ -342,10 +459,13 @@ class RungeKutta {
 
   const System& system_;
   const Tableau<T, s>& tableau_;
-  Stages stages_;
-  Stages increments_;
-  std::array<Algebraic, kMaxStages> algebraic_;
+  alignas(64) Stages stages_;
+  alignas(64) Stages increments_;
+  alignas(64) StageRows<T, System::kAlgebraic, s, kMaxStages> algebraic_;
   Algebraic branch_;
+  T stop_ = T(0);
+  int most_iterations_ = kMaxIterations;
+  bool with_newton_ = true;
   T start_time_ = T(0);
   T last_step_ = T(0);
   std::array<T, kSize * kMaxCoupled * kSize * kMaxCoupled> newton_matrix_;  // scratch

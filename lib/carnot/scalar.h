@@ -43,13 +43,16 @@ constexpr T constant(const U& value) {
 
 // The value without its derivatives.
 template <class T>
-Real<T> value_of(const T& x) {
+auto value_of(const T& x) {
   if constexpr (kIsJet<T>) {
     return value_of(x.a);
   } else {
     return x;
   }
 }
+
+// A comparison that must hold; of packs (pack.h) in every lane.
+constexpr bool all(bool holds) { return holds; }
 
 // Unit round-off distance: the gap between 1 and the next number.
 template <class T>

@@ -5,6 +5,8 @@
 // z = (q, p) of length 2n. One indirect call per trajectory; inside it everything is inlined.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -12,6 +14,8 @@
 #include <string>
 #include <utility>
 
+#include "carnot/automatic_flow.h"
+#include "carnot/batch.h"
 #include "carnot/flow.h"
 #include "carnot/scene_info.h"
 #include "carnot/trajectory.h"
@@ -74,6 +78,40 @@ struct Segment {
   [[nodiscard]] FlowReport tangent_flow(const StepPlan& plan, double* z, double* m) const {
     return calls.tangent_flow(system.get(), plan, z, m);
   }
+  // Advances z with an error of about `tolerance`, constant steps chosen by a trial; see
+  // automatic_flow.h. Only where has_automatic_flow(). No allocation.
+  [[nodiscard]] AutomaticFlow automatic_flow(double start,
+                                             double duration,
+                                             double tolerance,
+                                             double* z) const {
+    return calls.automatic_flow(system.get(), start, duration, tolerance, z);
+  }
+  [[nodiscard]] bool has_automatic_flow() const { return calls.automatic_flow != nullptr; }
+  // Advances `count` phase points, one after the other in z, over the plan; on `threads` threads
+  // (0: all cores). Those that fail become NaN.
+  [[nodiscard]] BatchReport flow_batch(const StepPlan& plan,
+                                       int count,
+                                       double* z,
+                                       int threads = 0) const {
+    return batch_of(count, threads, [&](int i, BatchReport& report) {
+      double* const point = z + i * 2 * dof;
+      const FlowReport run = flow(plan, point);
+      report.evaluations += run.evaluations;
+      ++(run.completed() ? report.completed : report.failed);
+      if (!run.completed()) std::fill_n(point, 2 * dof, std::nan(""));
+    });
+  }
+  // The same with an error of about `tolerance` each, eight side by side with an explicit method of
+  // order 8 and adaptive steps: fast, and not symplectic. Only where has_adaptive_batch().
+  [[nodiscard]] BatchReport adaptive_batch(double start,
+                                           double duration,
+                                           double tolerance,
+                                           int count,
+                                           double* z,
+                                           int threads = 0) const {
+    return calls.adaptive_batch(system.get(), start, duration, tolerance, count, z, threads);
+  }
+  [[nodiscard]] bool has_adaptive_batch() const { return calls.adaptive_batch != nullptr; }
   // The same as flow(), measured and recorded.
   [[nodiscard]] FlowSummary audited_flow(const StepPlan& plan,
                                          double* z,
@@ -140,6 +178,8 @@ struct Segment {
   struct Calls {
     FlowReport (*flow)(const void*, const StepPlan&, double*);
     FlowReport (*tangent_flow)(const void*, const StepPlan&, double*, double*);
+    AutomaticFlow (*automatic_flow)(const void*, double, double, double, double*);
+    BatchReport (*adaptive_batch)(const void*, double, double, double, int, double*, int);
     FlowSummary (*audited_flow)(const void*, const StepPlan&, double*, const AuditOptions&);
     PointValues (*evaluate)(const void*, double, const double*, const double*, double*, double*);
     double (*momentum)(const void*, double, const double*, double*, const double*, double*);

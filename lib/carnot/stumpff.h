@@ -8,11 +8,57 @@
 // Source: Stiefel & Scheifele, Linear and Regular Celestial Mechanics (1971), section 11.
 #pragma once
 
+#include <array>
 #include <cmath>
 
+#include "carnot/pack.h"
 #include "carnot/scalar.h"
 
 namespace carnot {
+
+// The series of c_k, which reaches round-off for s <= kNearStumpff: even and odd powers apart, so
+// that the chain is short.
+inline constexpr double kNearStumpff = 10;
+
+template <int k, class T>
+T stumpff_series(const T& s) {
+  constexpr int kTerms = 16;
+  constexpr auto kCoefficients = [] {
+    std::array<double, kTerms> c{};
+    double factorial = 1;
+    for (int i = 2; i <= k; ++i) factorial *= i;
+    for (int j = 0; j < kTerms; ++j) {
+      c[j] = (j % 2 == 0 ? 1 : -1) / factorial;
+      factorial *= (2.0 * j + k + 1) * (2.0 * j + k + 2);
+    }
+    return c;
+  }();
+  const T s2 = s * s;
+  T even(kCoefficients[kTerms - 2]);
+  T odd(kCoefficients[kTerms - 1]);
+  for (int j = kTerms - 4; j >= 0; j -= 2) {
+    even = even * s2 + T(kCoefficients[j]);
+    odd = odd * s2 + T(kCoefficients[j + 1]);
+  }
+  return odd * s + even;
+}
+
+// On packs, where all lanes go one way.
+template <int k, class T>
+T packed_stumpff(const T& s) {
+  if (all(s <= T(kNearStumpff))) return stumpff_series<k>(s);
+  const T root = sqrt(max(s, T(1e-300)));
+  if constexpr (k == 0) {
+    return cos(root);
+  } else if constexpr (k == 1) {
+    return sin(root) / root;
+  } else {
+    double factorial = 1;
+    for (int i = 2; i <= k - 2; ++i) factorial *= i;
+    const T far = (T(1 / factorial) - packed_stumpff<k - 2>(s)) / max(s, T(1));
+    return select(s <= T(kNearStumpff), stumpff_series<k>(min(s, T(kNearStumpff))), far);
+  }
+}
 
 // c_k(s) for s >= 0. Values to a few units of round-off; on Jets by the derivative above.
 template <int k, class T>
@@ -22,6 +68,8 @@ T stumpff(const T& s) {
         constant<typename T::Scalar>(0.5) *
         (constant<typename T::Scalar>(k) * stumpff<k + 2>(s.a) - stumpff<k + 1>(s.a));
     return T(stumpff<k>(s.a), derivative * s.v);
+  } else if constexpr (kIsPack<T>) {
+    return packed_stumpff<k>(s);
   } else {
     using std::abs, std::cos, std::sin, std::sqrt;
     if (s < T(1)) {  // here recursion would cancel

@@ -33,21 +33,22 @@ template <class T, int s>
 using StageMatrix =
     Eigen::Matrix<T, s, s, 0, s == kAnyStages ? kMostStages : s, s == kAnyStages ? kMostStages : s>;
 
+// Aligned so that a row of eight lies in one cache line.
 template <class T, int s = kAnyStages>
 struct Tableau {
   int order = 0;
   Coupling coupling = Coupling::kFull;
   bool partitioned = false;
-  StageVector<T, s> c;       // nodes
-  StageVector<T, s> b;       // weights
-  StageVector<T, s> omega;   // b, with 1 for 0
-  StageVector<T, s> update;  // 1, or 0 where b is 0
-  StageMatrix<T, s> mu;      // of q, and of p unless partitioned
-  StageMatrix<T, s> mu_p;    // of p where partitioned, else empty (fixed s: unused)
+  StageVector<T, s> c;                  // nodes
+  StageVector<T, s> b;                  // weights
+  alignas(64) StageVector<T, s> omega;  // b, with 1 for 0
+  StageVector<T, s> update;             // 1, or 0 where b is 0
+  alignas(64) StageMatrix<T, s> mu;     // of q, and of p unless partitioned
+  StageMatrix<T, s> mu_p;               // of p where partitioned, else empty (fixed s: unused)
 
   // Row i, column j: weight of L_j of the last step in the first guess of L_i of the next one of
   // the same length, by extrapolation of the collocation polynomial. Full coupling only.
-  StageMatrix<T, s> extrapolation;
+  alignas(64) StageMatrix<T, s> extrapolation;
 
   [[nodiscard]] int stages() const { return static_cast<int>(c.size()); }
   [[nodiscard]] T momentum_mu(int i, int j) const { return partitioned ? mu_p(i, j) : mu(i, j); }

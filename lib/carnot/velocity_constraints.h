@@ -39,6 +39,7 @@ class VelocityConstraints {
   static constexpr int kFrame = kDof - kMultipliers;
   static constexpr int kAlgebraic = HasFrame<Scene> ? kFrame : kDof + kMultipliers;
   static constexpr bool kAutonomous = true;
+  static constexpr bool kPacks = !IsScalarOnly<Scene>;  // rate() runs on packs
 
   explicit VelocityConstraints(Scene scene) : scene_(std::move(scene)) {}
 

@@ -60,7 +60,7 @@ struct Vehicle {
     // clang-format off
     b << cos(q[3]),                                 zero,
          sin(q[3]),                                 zero,
-         sin(q[3] - q[2]) / constant<T>(length),    zero,
+         sin(q[3] - q[2]) * constant<T>(1 / length),    zero,
          zero,                                      constant<T>(1);
     // clang-format on
     return b;
@@ -70,7 +70,7 @@ struct Vehicle {
   template <class T>
   [[nodiscard]] Matrix<T, 2, 2> frame_mass(const Vector<T, 4>& q) const {
     using std::sin;
-    const T turn = sin(q[3] - q[2]) / constant<T>(length);
+    const T turn = sin(q[3] - q[2]) * constant<T>(1 / length);
     Matrix<T, 2, 2> a;
     a(0, 0) = constant<T>(1) + constant<T>(alpha) * turn * turn;
     a(0, 1) = a(1, 0) = constant<T>(0);
@@ -85,8 +85,8 @@ struct Vehicle {
                                             const Vector<T, 2>& u) const {
     using std::cos, std::sin;
     const T delta = q[3] - q[2];
-    const T turn = u[0] * cos(delta) / constant<T>(length);  // d theta' / d delta
-    const T theta_dot = u[0] * sin(delta) / constant<T>(length);
+    const T turn = u[0] * cos(delta) * constant<T>(1 / length);  // d theta' / d delta
+    const T theta_dot = u[0] * sin(delta) * constant<T>(1 / length);
     const T by_delta = turn * (p[2] - constant<T>(alpha) * theta_dot);
     Vector<T, 4> gradient;
     gradient[0] = gradient[1] = constant<T>(0);

@@ -6,10 +6,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "carnot/parallel.h"
 #include "carnot/shooting/classification.h"
 #include "carnot/shooting/failure.h"
 #include "carnot/shooting/multiple_shooting.h"
-#include "carnot/shooting/parallel.h"
 #include "carnot/shooting/ranking.h"
 #include "carnot/shooting/search.h"
 #include "carnot/shooting/windings.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "carnot/shooting/knots.h"
-#include "carnot/shooting/parallel.h"
+#include "carnot/parallel.h"
 #include "carnot/shooting/path.h"
 #include "carnot/shooting/symmetry.h"
 #include "carnot/shooting/verification.h"

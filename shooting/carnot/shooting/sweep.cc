@@ -6,7 +6,7 @@
 #include <random>
 
 #include "carnot/shooting/knots.h"
-#include "carnot/shooting/parallel.h"
+#include "carnot/parallel.h"
 
 namespace carnot {
 namespace {

@@ -1,0 +1,79 @@
+// Many trajectories of one system, eight to a pack where that is faster, packs on several threads.
+//
+// What goes into a pack depends on the order of the trajectories alone, so the answer has the same
+// bits whatever the number of threads.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+
+#include "carnot/dop853_adaptive.h"
+#include "carnot/parallel.h"
+#include "carnot/phase_space.h"
+
+namespace carnot {
+
+struct BatchReport {
+  long completed = 0;
+  long failed = 0;       // their z are NaN
+  long evaluations = 0;  // rate() calls, each lane of a pack counted
+};
+
+// Calls work(i, report) for i in [0, count), on threads, and adds up the reports.
+template <class Work>
+BatchReport batch_of(int count, int threads, const Work& work) {
+  std::atomic<long> completed{0};
+  std::atomic<long> failed{0};
+  std::atomic<long> evaluations{0};
+  parallel_for(count, thread_count(threads), [&](int i) {
+    BatchReport one;
+    work(i, one);
+    completed += one.completed;
+    failed += one.failed;
+    evaluations += one.evaluations;
+  });
+  return {completed, failed, evaluations};
+}
+
+// Advances `count` phase points, rows of 2n numbers in `z`, by `duration` with DOP853 and common
+// steps for each eight; error of about `tolerance` each, not symplectic. A pack that fails is tried
+// again one by one. Cost: that of one trajectory per pack, and a fifth more. threads = 0: all.
+template <class System>
+BatchReport adaptive_batch(const System& system,
+                           double start,
+                           double duration,
+                           double tolerance,
+                           int count,
+                           double* z,
+                           int threads) {
+  constexpr int kLanes = 8;
+  constexpr int size = 2 * System::kDof;
+  using Rows = std::array<double, size * kLanes>;
+  const auto advance = [&](int first, int lanes, BatchReport& report) {
+    alignas(64) Rows rows;
+    for (int l = 0; l < kLanes; ++l) {
+      const double* const from = z + (first + std::min(l, lanes - 1)) * size;
+      for (int k = 0; k < size; ++k) rows[k * kLanes + l] = from[k];
+    }
+    const AdaptiveReport run =
+        dop853_adaptive<kLanes>(system, start, duration, tolerance, rows.data());
+    report.evaluations += run.evaluations * lanes;
+    if (!run.completed && lanes > 1) return false;
+    for (int l = 0; l < lanes; ++l) {
+      for (int k = 0; k < size; ++k) {
+        z[(first + l) * size + k] = run.completed ? rows[k * kLanes + l] : std::nan("");
+      }
+    }
+    (run.completed ? report.completed : report.failed) += lanes;
+    return true;
+  };
+  return batch_of((count + kLanes - 1) / kLanes, threads, [&](int pack, BatchReport& report) {
+    const int first = pack * kLanes;
+    const int lanes = std::min(kLanes, count - first);
+    if (advance(first, lanes, report)) return;
+    for (int l = 0; l < lanes; ++l) (void)advance(first + l, 1, report);
+  });
+}
+
+}  // namespace carnot
