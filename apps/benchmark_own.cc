@@ -1,6 +1,7 @@
 // The methods of this program on a benchmark trajectory, all through Segment.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "benchmark_contest.h"
@@ -11,12 +12,13 @@ namespace carnot::apps {
 namespace {
 
 constexpr long kBatch = 64;
+constexpr const char* kAdaptiveBatch = "dop853";
 
 // What is known of a trajectory whose steps were chosen.
 struct ChosenFlow {
   bool completed = false;
   std::string message;
-  long count = 0;
+  StepPlan plan;
   long evaluations = 0;
 };
 
@@ -25,24 +27,25 @@ ChosenFlow flow_by_tolerance(const Segment& segment,
                              double duration,
                              double tolerance,
                              std::vector<double>& z) {
+  if (segment.has_automatic_flow()) {
+    const AutomaticFlow flow = segment.automatic_flow(0, duration, tolerance, z.data());
+    if (flow.reached) return {true, "", flow.plan, flow.evaluations};
+  }
   const StepChoice choice = choose_steps(segment, 0, duration, z, tolerance);
-  if (choice.status != StepChoiceStatus::kOk) return {false, choice.message, choice.count, 0};
-  const FlowReport report = segment.flow(StepPlan::equal(0, duration, choice.count), z.data());
+  StepPlan plan = StepPlan::equal(0, duration, std::max(1L, choice.count));
+  plan.stop = choice.stop;
+  if (choice.status != StepChoiceStatus::kOk) return {false, choice.message, plan, 0};
+  const FlowReport report = segment.flow(plan, z.data());
   return {report.completed(),
           std::string(report.reason()),
-          choice.count,
+          plan,
           choice.evaluations + report.evaluations};
 }
 
 // Many trajectories in place, one (q, p) after the other. Evaluations of all; negative on failure.
 double flow_many(const Segment& segment, const StepPlan& plan, long count, std::vector<double>& z) {
-  double evaluations = 0;
-  for (long i = 0; i < count; ++i) {
-    const FlowReport report = segment.flow(plan, z.data() + 2 * segment.dof * i);
-    if (!report.completed()) return -1;
-    evaluations += static_cast<double>(report.evaluations);
-  }
-  return evaluations;
+  const BatchReport report = segment.flow_batch(plan, static_cast<int>(count), z.data(), 1);
+  return report.failed > 0 ? -1 : static_cast<double>(report.evaluations);
 }
 
 void keep(const std::vector<double>& z, std::size_t size, BenchmarkEnd& end) {
@@ -93,17 +96,14 @@ Contestant by_tolerance(const Segment& segment, const BenchmarkProblem& problem,
     std::vector<double> z = start;
     const ChosenFlow flow = flow_by_tolerance(segment, duration, tolerance, z);
     if (!flow.completed) return {0, flow.message};
-    return watch_plan(segment, StepPlan::equal(0, duration, flow.count), start);
+    return watch_plan(segment, flow.plan, start);
   };
   return contestant;
 }
 
 // The first trajectory is the one of the problem, the others differ by up to a percent in p.
-Contestant in_a_batch(const Segment& segment, const BenchmarkProblem& problem, long count) {
+std::vector<double> batch_starts(const BenchmarkProblem& problem) {
   constexpr double kSpread = 1e-2;
-  Contestant contestant = by_steps(segment, problem, count);
-  contestant.mode = "batch";
-  contestant.trajectories = kBatch;
   std::vector<double> starts;
   for (long i = 0; i < kBatch; ++i) {
     const double factor = 1 + kSpread * static_cast<double>(i) / kBatch;
@@ -112,6 +112,14 @@ Contestant in_a_batch(const Segment& segment, const BenchmarkProblem& problem, l
       starts.push_back(problem.start[k] * (momentum ? factor : 1));
     }
   }
+  return starts;
+}
+
+Contestant in_a_batch(const Segment& segment, const BenchmarkProblem& problem, long count) {
+  Contestant contestant = by_steps(segment, problem, count);
+  contestant.mode = "batch";
+  contestant.trajectories = kBatch;
+  const std::vector<double> starts = batch_starts(problem);
   const StepPlan plan = StepPlan::equal(0, problem.trajectory.duration, count);
   contestant.run = [=, size = problem.start.size(), z = starts]() mutable {
     z = starts;
@@ -121,6 +129,37 @@ Contestant in_a_batch(const Segment& segment, const BenchmarkProblem& problem, l
     end.evaluations = evaluations / kBatch;
     keep(z, size, end);
     return end;
+  };
+  return contestant;
+}
+
+// The same from a tolerance alone: adaptive, so of the library's batches only.
+Contestant batch_by_tolerance(const Segment& segment,
+                              const BenchmarkProblem& problem,
+                              double tolerance) {
+  Contestant contestant;
+  contestant.method = kAdaptiveBatch;
+  contestant.mode = "batch";
+  contestant.automatic = true;
+  contestant.step_or_tolerance = tolerance;
+  contestant.trajectories = kBatch;
+  const auto run = [=,
+                    duration = problem.trajectory.duration,
+                    size = problem.start.size(),
+                    starts = batch_starts(problem),
+                    z = batch_starts(problem)]() mutable {
+    z = starts;
+    const BatchReport report = segment.adaptive_batch(0, duration, tolerance, kBatch, z.data(), 1);
+    BenchmarkEnd end;
+    end.completed = report.failed == 0;
+    end.evaluations = static_cast<double>(report.evaluations) / kBatch;
+    keep(z, size, end);
+    return end;
+  };
+  contestant.run = run;
+  contestant.watch = [run, energy = problem.energy, z = problem.start]() mutable -> BenchmarkWatch {
+    const BenchmarkEnd end = run();
+    return {std::abs(energy(end.z.data()) - energy(z.data())), end.completed ? "" : "a run failed"};
   };
   return contestant;
 }
@@ -144,7 +183,7 @@ constexpr StepLadder kLadders[] = {{"midpoint", 50, 2, 8},
                                    {"dop853", 20, kRootTwo, 9}};
 constexpr const char* kAutomaticCoarse[] = {"gauss8", "gauss12"};
 constexpr const char* kDefault = "gauss16";
-constexpr const char* kBatched[] = {"gauss16", "dop853"};
+constexpr const char* kBatched[] = {"gauss16"};
 
 std::vector<long> counts_of(const StepLadder& ladder, double duration, bool quick) {
   std::vector<long> counts;
@@ -205,6 +244,9 @@ std::vector<Contestant> own_contestants(const BenchmarkProblem& problem,
         all.push_back(in_a_batch(segment(method), problem, count));
       }
     }
+  }
+  for (const double tolerance : ladder.tolerances(kDense, kDigits)) {
+    all.push_back(batch_by_tolerance(segment(kDefault), problem, tolerance));
   }
   return all;
 }
