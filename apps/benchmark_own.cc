@@ -143,7 +143,7 @@ Contestant batch_by_tolerance(const Segment& segment,
   contestant.automatic = true;
   contestant.step_or_tolerance = tolerance;
   contestant.trajectories = kBatch;
-  const auto run = [=,
+  auto run = [=,
                     duration = problem.trajectory.duration,
                     size = problem.start.size(),
                     starts = batch_starts(problem),

@@ -4,6 +4,8 @@
 // in
 //              an explicit method; throughput, where it does not, as over many trajectories
 // scene/...    the same by the formulas of the scene
+// pack/...     eight of them side by side: by the scene with its frame, and with M and G alone, its
+//              derivatives by the library
 // step/...     one step of a method
 // peer/...     one accepted step of DOP853 with step control
 #include <benchmark/benchmark.h>
@@ -16,6 +18,7 @@
 #include "benchmark_dop853.h"
 #include "benchmark_rates.h"
 #include "benchmark_trajectory.h"
+#include "carnot/packed_rate.h"
 #include "carnot/phase_space.h"
 #include "carnot/scenes/heisenberg.h"
 #include "carnot/scenes/vehicle.h"
@@ -67,6 +70,45 @@ void scene_latency(benchmark::State& state, const BenchmarkTrajectory& trajector
   benchmark::DoNotOptimize(z.data());
 }
 
+// The scene without what its author may write beside M, G and V.
+template <class Scene>
+struct Plain {
+  static constexpr int kDof = Scene::kDof;
+  static constexpr int kMultipliers = Scene::kMultipliers;
+  Scene scene;
+  template <class T>
+  [[nodiscard]] auto mass(const Vector<T, kDof>& q) const {
+    return scene.mass(q);
+  }
+  template <class T>
+  [[nodiscard]] auto constraints(const Vector<T, kDof>& q) const {
+    return scene.constraints(q);
+  }
+  template <class T>
+  requires HasPotential<Scene>
+  [[nodiscard]] T potential(const Vector<T, kDof>& q) const { return scene.potential(q); }
+};
+
+template <class Scene>
+void pack_latency(benchmark::State& state, const BenchmarkTrajectory& trajectory) {
+  constexpr int kLanes = 8;
+  constexpr int kSize = 2 * Scene::kDof;
+  const auto system = make_system(Scene{});
+  const std::vector<double> start = benchmark_start<double>(trajectory);
+  alignas(64) std::array<double, kLanes> t{};
+  alignas(64) std::array<double, kSize * kLanes> z;
+  alignas(64) std::array<double, decltype(system)::kAlgebraic * kLanes> y;
+  alignas(64) std::array<double, kSize * kLanes> f;
+  for (int i = 0; i < kSize * kLanes; ++i) z[i] = start[i / kLanes];
+  for (auto _ : state) {
+    if (!packed_rate<kLanes>(system, t.data(), z.data(), y.data(), f.data())) {
+      state.SkipWithError("no rate");
+    }
+    for (int i = 0; i < kSize; ++i) z[i * kLanes] += kNothing * f[i * kLanes];
+  }
+  benchmark::DoNotOptimize(z.data());
+}
+
 void method_step(benchmark::State& state,
                  const BenchmarkTrajectory& trajectory,
                  const std::string& method) {
@@ -107,6 +149,8 @@ void add_scene(const BenchmarkTrajectory& trajectory) {
   add("rate/latency", [=](auto& state) { rate_latency<Rate>(state, trajectory); });
   add("rate/throughput", [=](auto& state) { rate_throughput<Rate>(state, trajectory); });
   add("scene/latency", [=](auto& state) { scene_latency<Scene>(state, trajectory); });
+  add("pack/frame", [=](auto& state) { pack_latency<Scene>(state, trajectory); });
+  add("pack/plain", [=](auto& state) { pack_latency<Plain<Scene>>(state, trajectory); });
   for (const std::string method : {"midpoint", "gauss8", "gauss16", "dop853"}) {
     add("step/" + method, [=](auto& state) { method_step(state, trajectory, method); });
   }

@@ -200,9 +200,9 @@ AutomaticFlow automatic_flow(const Stepper& fresh,
   if (!(count <= kMostSteps)) return result;
   bool ok = run(count, stop, end);
   result.error = tolerance;
-  const double away = ok ? distance(end, trial.z) / trial.loose : INFINITY;
-  if (!(away <= kExplained)) {
-    double growth = ok ? away : kFailed;
+  const double away = ok ? distance(end, trial.z) : INFINITY;
+  if (!(away <= kExplained * trial.loose)) {
+    double growth = ok ? away / trial.loose : kFailed;
     result.error = INFINITY;
     for (int i = 0; i < kMostRuns && !(result.error <= tolerance); ++i) {
       const auto before = end;

@@ -103,10 +103,10 @@ struct SinCos {
 inline constexpr double kLargestAngle = 1e6;
 
 // sin and cos to 2 ulp for |x| <= kLargestAngle. With x = n pi/2 + r, |r| <= pi/4, n is the nearest
-// integer (adding 1.5 2^52 rounds, and leaves n in the low bits), n pi/2 is subtracted in parts
-// (Cody & Waite 1980: with a fused multiply-add two parts of pi/2 do, without it three whose
-// products with n are exact), and the polynomials are those of the Cephes library (Moshier 1992),
-// evaluated in pairs so that the chain is short. The quadrant n mod 4 swaps them and sets signs.
+// integer (adding 1.5 2^52 rounds, and leaves n in the low bits), n pi/2 is subtracted in three
+// parts whose products with n are exact (Cody & Waite 1980), and the polynomials are those of the
+// Cephes library (Moshier 1992), evaluated in pairs so that the chain is short. The quadrant n mod
+// 4 swaps them and sets signs.
 template <class Lane>
 [[gnu::always_inline]] inline SinCos<Lane> sin_cos(const Lane& x) {
   if constexpr (std::is_same_v<Lane, double>) {
@@ -117,14 +117,9 @@ template <class Lane>
     const Lane round(6755399441055744.0);
     const Lane shifted = fma(x, Lane(0.63661977236758134308), round);
     const Lane n = shifted - round;
-#ifdef __FMA__
-    Lane r = fnma(n, Lane(1.5707963267948965580e+00), x);
-    r = fnma(n, Lane(6.1232339957367658860e-17), r);
-#else
     Lane r = x - n * Lane(1.57079632673412561417e+00);
     r = r - n * Lane(6.07710050630396597660e-11);
     r = r - n * Lane(2.02226624879595063154e-21);
-#endif
     const Lane nan(std::numeric_limits<double>::quiet_NaN());
     r = xsimd::select(xsimd::abs(x) <= Lane(kLargestAngle), r, nan);
     const Lane z = r * r;
@@ -184,7 +179,7 @@ class Pack {
   }
 
   // Copies register by register: else compilers copy piecewise, which the next load waits for.
-  Pack() {}
+  Pack() = default;  // Pack() is zero, as Scalar() must be for Jets; `Pack x;` is not set
   [[gnu::always_inline]] Pack(const Pack& other) {
     for (int i = 0; i < kParts; ++i) part_[i] = other.part_[i];
   }

@@ -1,6 +1,9 @@
 // rate() on W phase points side by side, from and to plain numbers.
 #pragma once
 
+#include <algorithm>
+#include <array>
+
 #include "carnot/index_one_system.h"
 #include "carnot/pack.h"
 
@@ -32,6 +35,37 @@ template <int W, class System, class Lane = typename pack_lane::Widest<W>::type>
     rate.p_dot[i].store(z_dot + (n + i) * W);
   }
   for (int i = 0; i < System::kAlgebraic; ++i) algebraic[i].store(y + i * W);
+  return true;
+}
+
+// The same for columns first, ..., first + count - 1 of matrices with a column for each point, up
+// to W of them; idle lanes repeat the last.
+template <int W, class System, class Points, class Algebraic>
+bool packed_columns(const System& system,
+                    const double* t,
+                    int first,
+                    int count,
+                    const Points& z,
+                    Algebraic& y,
+                    Points& z_dot) {
+  constexpr int size = 2 * System::kDof;
+  constexpr int m = System::kAlgebraic;
+  alignas(64) std::array<double, W> time;
+  alignas(64) std::array<double, size * W> points;
+  alignas(64) std::array<double, size * W> rates;
+  alignas(64) std::array<double, m * W> solutions;
+  for (int l = 0; l < W; ++l) {
+    const int column = std::min(l, count - 1);
+    time[l] = t[column];
+    for (int k = 0; k < size; ++k) points[k * W + l] = z(k, first + column);
+  }
+  if (!packed_rate<W>(system, time.data(), points.data(), solutions.data(), rates.data())) {
+    return false;
+  }
+  for (int l = 0; l < count; ++l) {
+    for (int k = 0; k < size; ++k) z_dot(k, first + l) = rates[k * W + l];
+    for (int k = 0; k < m; ++k) y(k, first + l) = solutions[k * W + l];
+  }
   return true;
 }
 

@@ -14,8 +14,8 @@
 // the scale of the components; or, where a run is asked for a tolerance, until no stage changes by
 // more than stop_at(). If that is not reached, Newton's method takes over.
 //
-// Rates of stages that are found together are evaluated side by side in packs of eight, where the
-// system allows it; where one of them fails, one by one, which tells the reason.
+// Rates of coupled stages are evaluated side by side in packs of eight where the system allows it,
+// and one by one where one of them fails, which tells the reason.
 #pragma once
 
 #include <algorithm>
@@ -25,10 +25,11 @@
 #include <limits>
 #include <type_traits>
 
-#include "carnot/lu.h"
 #include "carnot/packed_rate.h"
 #include "carnot/packed_stages.h"
 #include "carnot/phase_space.h"
+#include "carnot/stage_equations.h"
+#include "carnot/stopping_rule.h"
 #include "carnot/tableau.h"
 
 namespace carnot {
@@ -70,7 +71,7 @@ class RungeKutta {
   }
   // The largest change of a stage, in absolute value, at which the iteration ends; 0: at round-off.
   void stop_at(T change) { stop_ = change; }
-  // Gives up after so many iterations, without turning to Newton's method.
+  // Gives up after so many iterations; no Newton's method.
   void only_iterate(int most) {
     most_iterations_ = most;
     with_newton_ = false;
@@ -82,7 +83,7 @@ class RungeKutta {
   [[nodiscard]] StepReport step(const T& t, const T& h, State<T, kDof>& z) {
     StepReport report;
     if (!z.value.allFinite()) {
-      fail(RateStatus::kNotFinite, report);
+      (void)fail(RateStatus::kNotFinite, report);
       return report;
     }
     const int count = tableau_.stages();
@@ -95,8 +96,8 @@ class RungeKutta {
     }
     State<T, kDof> end = z;
     if (report.status == StepStatus::kOk) {
-      end.add(sum_of_increments());
-      if (!end.value.allFinite()) fail(RateStatus::kNotFinite, report);
+      end.add(sum_of_increments(tableau_, increments_));
+      if (!end.value.allFinite()) (void)fail(RateStatus::kNotFinite, report);
     }
     if (report.status != StepStatus::kOk) {
       start_on(branch_);
@@ -144,10 +145,10 @@ class RungeKutta {
   [[nodiscard]] bool coupled() const {
     return s != kAnyStages || tableau_.coupling == Coupling::kFull;
   }
-
-  static void fail(RateStatus rate, StepReport& report) {
+  static bool fail(RateStatus rate, StepReport& report) {
     report.status = StepStatus::kRateFailed;
     report.rate = rate;
+    return false;
   }
 
   void solve(const Block& block, StepReport& report) {
@@ -172,37 +173,9 @@ class RungeKutta {
   // U of the block from the increments.
   void set_stages(const Block& block, Stages& u) const {
     if (coupled()) {
-      u = coupled_stages(block.z);
+      stage_arguments(tableau_, increments_, block.z, u);
     } else {
-      u.col(block.first) = stage(block.z, block.first);
-    }
-  }
-
-  [[nodiscard]] Stages coupled_stages(const State<T, kDof>& z) const {
-    Stages u = increments_.lazyProduct(tableau_.mu.transpose());
-    if (tableau_.partitioned) {
-      u.template bottomRows<kDof>() =
-          increments_.template bottomRows<kDof>().lazyProduct(tableau_.mu_p.transpose());
-    }
-    u.colwise() += z.compensation;
-    u.colwise() += z.value;
-    return u;
-  }
-
-  // One stage from those before and itself. The increments of those after it are not of this step.
-  [[nodiscard]] Point stage(const State<T, kDof>& z, int i) const {
-    Point sum = z.compensation;
-    for (int j = 0; j <= i; ++j) {
-      if (tableau_.mu(i, j) != T(0)) sum += tableau_.mu(i, j) * increments_.col(j);
-    }
-    return sum + z.value;
-  }
-
-  [[nodiscard]] Point sum_of_increments() const {
-    if constexpr (s == kAnyStages) {
-      return increments_.lazyProduct(tableau_.update);
-    } else {
-      return increments_.rowwise().sum();
+      u.col(block.first) = stage_argument(tableau_, increments_, block.z, block.first);
     }
   }
 
@@ -214,10 +187,7 @@ class RungeKutta {
     Algebraic y = algebraic_.col(i);
     const RateStatus rate = phase_rate(system_, time, u, y, f);
     ++report.evaluations;
-    if (rate != RateStatus::kOk) {
-      fail(rate, report);
-      return false;
-    }
+    if (rate != RateStatus::kOk) return fail(rate, report);
     report.rate = rate;
     algebraic_.col(i) = y;
     increments_.col(i) = (block.h * tableau_.omega[i]) * f;
@@ -229,10 +199,7 @@ class RungeKutta {
     if constexpr (kPacks) {
       if (block.end() - block.begin() > 1) {
         if (evaluate_packs(block, report)) return true;
-        if (!with_newton_) {
-          fail(RateStatus::kNotFinite, report);
-          return false;
-        }
+        if (!with_newton_) return fail(RateStatus::kNotFinite, report);
       }
     }
     for (int i = block.begin(); i < block.end(); ++i) {
@@ -241,39 +208,31 @@ class RungeKutta {
     return true;
   }
 
-  // Side by side, eight at a time; idle lanes repeat the last stage. False where a rate fails.
+  // Side by side, eight at a time. False where a rate fails.
   bool evaluate_packs(const Block& block, StepReport& report) {
-    constexpr int m = System::kAlgebraic;
-    alignas(64) std::array<double, kLanes> time;
-    alignas(64) std::array<double, m * kLanes> y;
-    for (int first = block.begin(); first < block.end(); first += kLanes) {
-      const int count = std::min(kLanes, block.end() - first);
-      const auto stage_of = [&](int lane) { return first + std::min(lane, count - 1); };
-      if constexpr (!System::kAutonomous) {
-        for (int l = 0; l < kLanes; ++l) time[l] = block.t + tableau_.c[stage_of(l)] * block.h;
-      } else {
-        time.fill(block.t);
+    if constexpr (kRows) {
+      alignas(64) std::array<T, kLanes> time;
+      for (int l = 0; l < kLanes; ++l) time[l] = block.t + tableau_.c[l] * block.h;
+      if (!packed_rate<kLanes>(
+              system_, time.data(), stages_.data(), algebraic_.data(), increments_.data())) {
+        return false;
       }
-      if constexpr (kRows) {
-        if (!packed_rate<kLanes>(
-                system_, time.data(), stages_.data(), algebraic_.data(), increments_.data())) {
+      packed_increments<kSize, s>(block.h, tableau_.omega.data(), increments_.data());
+      report.evaluations += kLanes;
+    } else {
+      for (int first = block.begin(); first < block.end(); first += kLanes) {
+        const int count = std::min(kLanes, block.end() - first);
+        std::array<T, kLanes> time;
+        for (int l = 0; l < count; ++l) time[l] = block.t + tableau_.c[first + l] * block.h;
+        if (!packed_columns<kLanes>(
+                system_, time.data(), first, count, stages_, algebraic_, increments_)) {
           return false;
         }
-        packed_increments<kSize, s>(block.h, tableau_.omega.data(), increments_.data());
-      } else {
-        alignas(64) std::array<double, kSize * kLanes> z;
-        alignas(64) std::array<double, kSize * kLanes> f;
-        for (int l = 0; l < kLanes; ++l) {
-          for (int k = 0; k < kSize; ++k) z[k * kLanes + l] = stages_(k, stage_of(l));
+        for (int i = first; i < first + count; ++i) {
+          increments_.col(i) *= block.h * tableau_.omega[i];
         }
-        if (!packed_rate<kLanes>(system_, time.data(), z.data(), y.data(), f.data())) return false;
-        for (int l = 0; l < count; ++l) {
-          const T weight = block.h * tableau_.omega[first + l];
-          for (int k = 0; k < kSize; ++k) increments_(k, first + l) = weight * f[k * kLanes + l];
-          for (int k = 0; k < m; ++k) algebraic_(k, first + l) = y[k * kLanes + l];
-        }
+        report.evaluations += count;
       }
-      report.evaluations += count;
     }
     report.rate = RateStatus::kOk;
     return true;
@@ -314,10 +273,7 @@ class RungeKutta {
     Algebraic y = branch_;
     const RateStatus rate = phase_rate(system_, block.t, block.z.value, y, f);
     ++report.evaluations;
-    if (rate != RateStatus::kOk) {
-      fail(rate, report);
-      return false;
-    }
+    if (rate != RateStatus::kOk) return fail(rate, report);
     for (int i = block.begin(); i < block.end(); ++i) {
       algebraic_.col(i) = y;
       increments_.col(i) = (block.h * tableau_.omega[i]) * f;
@@ -365,34 +321,16 @@ class RungeKutta {
   }
 
   bool iterate_to_round_off(const Block& block, StepReport& report) {
-    constexpr T kFar = std::numeric_limits<T>::max();
-    Point smallest = Point::Constant(kFar);
-    T last_change = kFar;
-    T change_before = kFar;
+    using Rule = StoppingRule<T, kSize>;
+    Rule rule;
     Stages next = stages_;
     Point change;
-    bool grace = true;
     for (int iteration = 0; iteration < most_iterations_; ++iteration) {
-      const T largest = update_stages(block, next, &change);
-      bool falling = iteration == 0;
-      bool at_rest = true;
-      for (int k = 0; k < kSize; ++k) {
-        falling = falling || (change[k] > T(0) && change[k] < smallest[k]);
-        at_rest = at_rest && change[k] == T(0);
-        smallest[k] = std::min(smallest[k], change[k]);
-      }
+      (void)update_stages(block, next, &change);
       if (!evaluate_all(block, report)) return false;
-      if (at_rest) return true;
-      if (!falling) {
-        // Where q' depends on p alone and p' on q alone, the errors of q and p take turns, and one
-        // of them may be zero by luck: the other one still contracts.
-        const bool contracts = largest < change_before / T(4);
-        if (!grace && !contracts) return settled(block, change);
-        if (!grace) smallest.setConstant(kFar);
-        grace = false;
-      }
-      change_before = last_change;
-      last_change = largest;
+      const auto verdict = rule(change);
+      if (verdict == Rule::Verdict::kAtRest) return true;
+      if (verdict == Rule::Verdict::kStalled) return settled(block, change);
     }
     return false;
   }
@@ -414,9 +352,10 @@ class RungeKutta {
     for (int iteration = 0; iteration < kMaxNewton; ++iteration) {
       if (!newton_matrix(block, report)) return;
       set_stages(block, next);
-      Stages correction = block.of(next) - block.of(stages_);  // the residual, then its solution
-      const int size = kSize * static_cast<int>(correction.cols());
-      if (!lu_solve(size, newton_matrix_.data(), 1, correction.data())) break;
+      // The residual, then its solution, stage by stage as the rows of the matrix.
+      Eigen::Matrix<T, kSize, s, Eigen::ColMajor, kSize, kMaxStages> correction =
+          block.of(next) - block.of(stages_);
+      if (!newton_.solve(static_cast<int>(correction.cols()), correction.data())) break;
       block.of(stages_) += correction;
       if (!correction.allFinite()) break;
       const T change = correction.cwiseAbs().maxCoeff();
@@ -430,29 +369,16 @@ class RungeKutta {
     report.status = StepStatus::kStagesDiverged;
   }
 
-  // I - mu_ij h omega_j df/dz(U_j) in blocks, row-major, and the rates at the stages.
+  // The rates at the stages, and the matrix of their linearized equations.
   bool newton_matrix(const Block& block, StepReport& report) {
-    const int width = kSize * (block.end() - block.begin());
-    Matrix<T, kSize, kSize> a;
     for (int j = block.begin(); j < block.end(); ++j) {
       if (!evaluate(block, j, report)) return false;
       const T time = block.t + tableau_.c[j] * block.h;
+      Matrix<T, kSize, kSize> a;
       const RateStatus rate = phase_jacobian(system_, time, Point(stages_.col(j)), algebraic(j), a);
-      if (rate != RateStatus::kOk) {
-        fail(rate, report);
-        return false;
-      }
+      if (rate != RateStatus::kOk) return fail(rate, report);
       a *= block.h * tableau_.omega[j];
-      for (int i = block.begin(); i < block.end(); ++i) {
-        T* const corner = newton_matrix_.data() + (i - block.begin()) * kSize * width +
-                          (j - block.begin()) * kSize;
-        for (int r = 0; r < kSize; ++r) {
-          const T mu = r < kDof ? tableau_.mu(i, j) : tableau_.momentum_mu(i, j);
-          for (int c = 0; c < kSize; ++c) {
-            corner[r * width + c] = T(i == j && r == c ? 1 : 0) - mu * a(r, c);
-          }
-        }
-      }
+      newton_.set_column(tableau_, block.begin(), block.end(), j, a);
     }
     return true;
   }
@@ -468,7 +394,7 @@ class RungeKutta {
   bool with_newton_ = true;
   T start_time_ = T(0);
   T last_step_ = T(0);
-  std::array<T, kSize * kMaxCoupled * kSize * kMaxCoupled> newton_matrix_;  // scratch
+  StageEquations<T, kSize, kMaxCoupled> newton_;  // scratch
 };
 
 }  // namespace carnot

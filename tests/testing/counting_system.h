@@ -10,6 +10,7 @@ namespace carnot::test {
 template <class System>
 struct CountingSystem : System {
   using System::System;
+  static constexpr bool kPacks = false;  // one by one
   mutable long calls = 0;
   long fail_from = -1;
   long fail_to = -1;

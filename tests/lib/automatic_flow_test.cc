@@ -1,0 +1,114 @@
+// Steps chosen by a trial: the error is about what was asked for.
+#include "carnot/automatic_flow.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "carnot/gauss.h"
+#include "carnot/make_segment.h"
+#include "testing/runs.h"
+
+namespace carnot {
+namespace {
+
+using test::Generator;
+
+template <class Scene>
+class AutomaticFlowTest : public ::testing::Test {
+ protected:
+  using System = VelocityConstraints<Scene>;
+  static constexpr int n = Scene::kDof;
+
+  System system_{test::uneven<Scene>()};
+
+  // By 40 steps of order 16 a unit of time in long double.
+  Vector<double, 2 * n> exact(const State<double, n>& start, double duration) const {
+    Gauss<System, 8, long double> step(system_);
+    auto z = test::cast_state<long double, System::kDof>(start);
+    const auto plan = StepPlan::equal(0, duration, std::lround(40 * std::abs(duration)) + 1);
+    EXPECT_TRUE(flow(step, plan, z).completed());
+    return z.value.template cast<double>();
+  }
+};
+
+TYPED_TEST_SUITE(AutomaticFlowTest, test::Scenes, test::SceneNames);
+
+// The trial tells the error to about a digit.
+TYPED_TEST(AutomaticFlowTest, ReachesTheTolerance) {
+  constexpr double kBeyond = 50;
+  Generator generator(5);
+  const Gauss<typename TestFixture::System, 8> fresh(this->system_);
+  for (int sample = 0; sample < 5; ++sample) {
+    const auto start = test::random_state<TypeParam::kDof>(generator);
+    for (const double duration : {0.5, 6.0, -4.0}) {
+      const auto expected = this->exact(start, duration);
+      for (const double tolerance : {1e-5, 1e-7, 1e-10}) {
+        auto z = start;
+        const AutomaticFlow run = automatic_flow(fresh, 0, duration, tolerance, z);
+        ASSERT_TRUE(run.reached) << duration << " " << tolerance;
+        EXPECT_LE((z.value - expected).cwiseAbs().maxCoeff(), kBeyond * tolerance) << duration;
+        EXPECT_LE(run.error, tolerance);
+        EXPECT_GE(run.evaluations, run.report.evaluations);
+        EXPECT_EQ(run.plan.end, duration);
+      }
+    }
+  }
+}
+
+// The plan that it reports, run again, gives the same bits.
+TYPED_TEST(AutomaticFlowTest, ReportsTheRunThatItMade) {
+  Generator generator(6);
+  const Gauss<typename TestFixture::System, 8> fresh(this->system_);
+  const auto start = test::random_state<TypeParam::kDof>(generator);
+  auto z = start;
+  const AutomaticFlow run = automatic_flow(fresh, 0, 5, 1e-9, z);
+  ASSERT_TRUE(run.reached);
+  auto again = start;
+  Gauss<typename TestFixture::System, 8> step(this->system_);
+  EXPECT_EQ(flow(step, run.plan, again).evaluations, run.report.evaluations);
+  EXPECT_EQ(again.value, z.value);
+}
+
+// Where errors grow by 500, a second run finds that out.
+TEST(AutomaticFlow, SeesErrorsGrow) {
+  using System = VelocityConstraints<scenes::VehicleCosine>;
+  const System system(scenes::VehicleCosine{});
+  const auto start = test::vehicle_start(system);
+  Gauss<System, 8, long double> wide(system);
+  auto expected = test::cast_state<long double, System::kDof>(start);
+  ASSERT_TRUE(flow(wide, StepPlan::equal(0, 20, 1000), expected).completed());
+  const Gauss<System, 8> fresh(system);
+  for (const double tolerance : {1e-3, 1e-6, 1e-9}) {
+    auto z = start;
+    ASSERT_TRUE(automatic_flow(fresh, 0, 20, tolerance, z).reached);
+    EXPECT_LE((z.value - expected.value.cast<double>()).cwiseAbs().maxCoeff(), 10 * tolerance);
+  }
+}
+
+TEST(AutomaticFlow, LeavesTheStateWhereItFails) {
+  using System = VelocityConstraints<scenes::VehicleCosine>;
+  const System system(scenes::VehicleCosine{});
+  const auto start = test::vehicle_start(system);
+  const Gauss<System, 8> fresh(system);
+  auto z = start;
+  EXPECT_FALSE(automatic_flow(fresh, 0, 10, 1e-18, z).reached);  // below round-off
+  EXPECT_EQ(z.value, start.value);
+  z.value[4] = std::nan("");
+  EXPECT_FALSE(automatic_flow(fresh, 0, 10, 1e-8, z).reached);
+  EXPECT_TRUE(std::isnan(z.value[4]));
+}
+
+TEST(AutomaticFlow, OfARestIsARest) {
+  using System = VelocityConstraints<scenes::Vehicle>;
+  const System system(scenes::Vehicle{});
+  auto z = make_state<double, 4>(Vector<double, 4>(1, 2, 3, 4), Vector<double, 4>::Zero());
+  const auto start = z;
+  const AutomaticFlow run = automatic_flow(Gauss<System, 8>(system), 0, 10, 1e-10, z);
+  EXPECT_TRUE(run.reached);
+  EXPECT_EQ(z.value, start.value);
+}
+
+}  // namespace
+}  // namespace carnot
