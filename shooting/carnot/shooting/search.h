@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
-#include "carnot/shooting/knots.h"
 #include "carnot/parallel.h"
+#include "carnot/shooting/knots.h"
 #include "carnot/shooting/path.h"
 #include "carnot/shooting/symmetry.h"
 #include "carnot/shooting/verification.h"

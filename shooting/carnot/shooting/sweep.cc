@@ -5,8 +5,8 @@
 #include <limits>
 #include <random>
 
-#include "carnot/shooting/knots.h"
 #include "carnot/parallel.h"
+#include "carnot/shooting/knots.h"
 
 namespace carnot {
 namespace {
