@@ -123,6 +123,23 @@ TEST(Verify, TakesAnySceneFromAGenericStart) {
   EXPECT_EQ(json["rows"][0]["energy_verdict"], "not asked");
 }
 
+TEST(Verify, DoesNotDependOnTheThreads) {
+  const auto rows = [](const char* threads) {
+    const Outcome outcome = run({"verify",
+                                 "heisenberg",
+                                 "--method",
+                                 "gauss4,lobatto4,midpoint",
+                                 "--steps",
+                                 "1000",
+                                 "--threads",
+                                 threads,
+                                 "--json"});
+    EXPECT_EQ(outcome.err, "");
+    return outcome.json()["rows"].dump();
+  };
+  EXPECT_EQ(rows("1"), rows("3"));
+}
+
 TEST(Verify, RefusesBadInput) {
   const std::map<std::vector<std::string>, std::string> cases{
       {{"verify", "heisenbreg"}, "did you mean heisenberg?"},
