@@ -110,11 +110,13 @@ void add_trapped(PaperWork& work, PaperPart& part) {
   constexpr double kTime = 1000;
   const Segment segment = paper_segment(kCosineScene, "midpoint");
   std::vector<double> z = vehicle_start(segment, {1, 0.5, 0.3, 0.8}, 1, 0.2);
-  const StepPlan plan = StepPlan::of_length(0, kTime, kCosineStep);
+  // Large multipliers ask for small steps.
+  constexpr double kStep = kCosineStep / 5;
+  const StepPlan plan = StepPlan::of_length(0, kTime, kStep);
   const Trajectory trajectory = work.flow(segment, plan, z, 1001).trajectory;
   // The trajectory is chaotic: only sizes mean something.
   constexpr double kEarly = 20;
-  constexpr double kGrowth = 10;
+  constexpr double kGrowth = 5;
   double early = 0;
   double all = 0;
   for (std::size_t i = 0; i < trajectory.t.size(); ++i) {
