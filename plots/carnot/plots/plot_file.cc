@@ -5,10 +5,12 @@
 
 #include <cctype>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 
@@ -110,6 +112,25 @@ std::string first_lines(const std::string& text) {
   return kept.substr(0, kLongest);
 }
 
+// Ctrl-C reaches every process of the terminal's group. gnuplot inherits the mask of blocked
+// signals, so it draws its figure to the end; this program answers once it is unblocked.
+class SignalShield {
+ public:
+  SignalShield() {
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGINT);
+    sigaddset(&signals, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &signals, &before_);
+  }
+  ~SignalShield() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  SignalShield(const SignalShield&) = delete;
+  SignalShield& operator=(const SignalShield&) = delete;
+
+ private:
+  sigset_t before_;
+};
+
 }  // namespace
 
 bool is_gif(const std::string& file) { return ending(file) == ".gif"; }
@@ -137,7 +158,12 @@ std::string write_picture(const std::string& file, const Picture& picture) {
   const Workshop workshop(fs::absolute(directory_of(file)));
   const std::string name = "figure" + ending(file);
   {
-    gnuplotio::Gnuplot gnuplot(command_line(workshop.path()));
+    std::optional<gnuplotio::Gnuplot> process;
+    {
+      const SignalShield shield;
+      process.emplace(command_line(workshop.path()));
+    }
+    gnuplotio::Gnuplot& gnuplot = *process;
     gnuplot << "set encoding utf8\nset minussign\n" << terminal(ending(file), picture);
     gnuplot << "set output '" << name << "'\n" << picture.commands << "\nset output\n";
   }  // waits for gnuplot
