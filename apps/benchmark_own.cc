@@ -143,11 +143,10 @@ Contestant batch_by_tolerance(const Segment& segment,
   contestant.automatic = true;
   contestant.step_or_tolerance = tolerance;
   contestant.trajectories = kBatch;
-  auto run = [=,
-                    duration = problem.trajectory.duration,
-                    size = problem.start.size(),
-                    starts = batch_starts(problem),
-                    z = batch_starts(problem)]() mutable {
+  const double duration = problem.trajectory.duration;
+  const std::size_t size = problem.start.size();
+  const std::vector<double> starts = batch_starts(problem);
+  auto run = [=, z = starts]() mutable {
     z = starts;
     const BatchReport report = segment.adaptive_batch(0, duration, tolerance, kBatch, z.data(), 1);
     BenchmarkEnd end;
