@@ -8,7 +8,7 @@
 namespace carnot::apps {
 
 // All steps of all the runs, about: what the progress bar goes by.
-inline constexpr double kPaperSteps = 6e5;
+inline constexpr double kPaperSteps = 6.8e5;
 
 PaperPart paper_sketch();                     // figure 1: the vehicle
 PaperPart paper_cosine(PaperWork& work);      // section 5: V = -cos r

@@ -5,12 +5,10 @@
 
 #include <cctype>
 #include <cmath>
-#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <optional>
 #include <sstream>
 #include <stdexcept>
 
@@ -93,10 +91,11 @@ std::string shell_quoted(const std::string& text) {
 
 // The shell notes gnuplot's status and swallows what gnuplot did not read: otherwise a gnuplot that
 // is missing or stops early would kill this program by SIGPIPE. It only uses built-in commands.
+// Ctrl-C reaches every process of the terminal: the shell stays, this program answers.
 std::string command_line(const fs::path& directory) {
   return "cd " + shell_quoted(directory.string()) +
-         " && { LC_ALL=C.UTF-8 gnuplot -d; echo $? > status; while read -r line; do :; done; } > "
-         "log 2>&1; :";
+         " && { trap '' INT TERM; LC_ALL=C.UTF-8 gnuplot -d; echo $? > status; "
+         "while read -r line; do :; done; } > log 2>&1; :";
 }
 
 // What gnuplot said, but for the count of frames it gives for every film.
@@ -111,25 +110,6 @@ std::string first_lines(const std::string& text) {
   }
   return kept.substr(0, kLongest);
 }
-
-// Ctrl-C reaches every process of the terminal's group. gnuplot inherits the mask of blocked
-// signals, so it draws its figure to the end; this program answers once it is unblocked.
-class SignalShield {
- public:
-  SignalShield() {
-    sigset_t signals;
-    sigemptyset(&signals);
-    sigaddset(&signals, SIGINT);
-    sigaddset(&signals, SIGTERM);
-    pthread_sigmask(SIG_BLOCK, &signals, &before_);
-  }
-  ~SignalShield() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-  SignalShield(const SignalShield&) = delete;
-  SignalShield& operator=(const SignalShield&) = delete;
-
- private:
-  sigset_t before_;
-};
 
 }  // namespace
 
@@ -158,12 +138,7 @@ std::string write_picture(const std::string& file, const Picture& picture) {
   const Workshop workshop(fs::absolute(directory_of(file)));
   const std::string name = "figure" + ending(file);
   {
-    std::optional<gnuplotio::Gnuplot> process;
-    {
-      const SignalShield shield;
-      process.emplace(command_line(workshop.path()));
-    }
-    gnuplotio::Gnuplot& gnuplot = *process;
+    gnuplotio::Gnuplot gnuplot(command_line(workshop.path()));
     gnuplot << "set encoding utf8\nset minussign\n" << terminal(ending(file), picture);
     gnuplot << "set output '" << name << "'\n" << picture.commands << "\nset output\n";
   }  // waits for gnuplot
