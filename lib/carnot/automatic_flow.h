@@ -81,6 +81,7 @@ namespace automatic {
 // Found on the vehicles and on heisenberg over six decades of the tolerance.
 inline constexpr double kPessimism = 1.5;    // estimated over true error: 1.5 to 25
 inline constexpr double kStop = 25;          // change of the last iteration over the tolerance
+inline constexpr double kMargin = 8;         // tolerance over the error that is aimed at
 inline constexpr double kLoose = 0.1;        // the same in the trial, over the length of a step
 inline constexpr double kUnresolved = 1e-2;  // error of a trial step over its length: too long
 inline constexpr double kShrink = 0.64;      // of the trial's steps
@@ -192,10 +193,11 @@ AutomaticFlow automatic_flow(const Stepper& fresh,
     return (a.value - b.value).cwiseAbs().maxCoeff();
   };
 
+  const double aim = tolerance / kMargin;
   const double trial_count = std::abs(duration) / trial.step;
   double count =
-      trial_count * std::max(kLongest, std::pow(trial.error / (kPessimism * tolerance), 1 / order));
-  double stop = kStop * tolerance;
+      trial_count * std::max(kLongest, std::pow(trial.error / (kPessimism * aim), 1 / order));
+  double stop = kStop * aim;
   State<double, Stepper::kDof> end = z;
   if (!(count <= kMostSteps)) return result;
   bool ok = run(count, stop, end);

@@ -138,7 +138,7 @@ TEST(FlowCommand, ChoosesStepsForATolerance) {
     EXPECT_EQ(json["status"], "completed");
     EXPECT_EQ(json["method"], method);
     for (int i = 0; i < 3; ++i) {
-      EXPECT_NEAR(json["q"][i].get<double>(), exact["q"][i].get<double>(), 10 * tolerance);
+      EXPECT_NEAR(json["q"][i].get<double>(), exact["q"][i].get<double>(), 2 * tolerance);
     }
   }
 }
