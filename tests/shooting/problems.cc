@@ -1,12 +1,11 @@
 #include "shooting/problems.h"
 
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "carnot/make_segment.h"
-#include "carnot/scenes/heisenberg_group.h"
-#include "carnot/scenes/unicycle.h"
-#include "carnot/scenes/vehicle.h"
-#include "carnot/scenes/vehicle_cosine.h"
+#include "scene_choice.h"
 
 namespace carnot::test {
 namespace {
@@ -31,10 +30,16 @@ struct Oscillator {
   }
 };
 
+Segment segment(std::string_view scene,
+                const apps::ParameterValues& parameters = {},
+                std::string_view method = default_method<Oscillator>()) {
+  return apps::find_scene(scene).make(parameters, std::string(method));
+}
+
 }  // namespace
 
 BoundaryValueProblem vehicle(std::vector<double> from, std::vector<double> to, double time) {
-  return {make_segment(scenes::Vehicle{}), std::move(from), std::move(to), time};
+  return {segment("vehicle"), std::move(from), std::move(to), time};
 }
 
 BoundaryValueProblem sideways() { return vehicle({0, 0, 0, 0}, {0, 1, 0, 0}); }
@@ -42,35 +47,30 @@ BoundaryValueProblem sideways() { return vehicle({0, 0, 0, 0}, {0, 1, 0, 0}); }
 BoundaryValueProblem straight_ahead() { return vehicle({0, 0, 0, 0}, {1, 0, 0, 0}); }
 
 BoundaryValueProblem long_vehicle(std::vector<double> from, std::vector<double> to, double length) {
-  scenes::Vehicle scene;
-  scene.length = length;
-  return {make_segment(scene), std::move(from), std::move(to)};
+  return {segment("vehicle", {{"length", length}}), std::move(from), std::move(to)};
 }
 
 BoundaryValueProblem stiff_vehicle(std::vector<double> to) {
-  scenes::Vehicle scene;
-  scene.alpha = 0.1;
-  scene.beta = 0.02;
-  scene.length = 2.5;
-  return {make_segment(scene), {0, 0, 0, 0}, std::move(to)};
+  const apps::ParameterValues stiff = {{"alpha", 0.1}, {"beta", 0.02}, {"length", 2.5}};
+  return {segment("vehicle", stiff), {0, 0, 0, 0}, std::move(to)};
 }
 
 BoundaryValueProblem vehicle_cosine(std::vector<double> from, std::vector<double> to, double time) {
-  return {make_segment(scenes::VehicleCosine{}), std::move(from), std::move(to), time};
+  return {segment("vehicle-cosine"), std::move(from), std::move(to), time};
 }
 
 BoundaryValueProblem heisenberg_group(std::vector<double> to, double time) {
-  return {make_segment(scenes::HeisenbergGroup{}), {0, 0, 0}, std::move(to), time};
+  return {segment("heisenberg-group"), {0, 0, 0}, std::move(to), time};
 }
 
 BoundaryValueProblem unicycle(std::vector<double> from, std::vector<double> to) {
-  return {make_segment(scenes::Unicycle{}), std::move(from), std::move(to)};
+  return {segment("unicycle"), std::move(from), std::move(to)};
 }
 
 BoundaryValueProblem oscillator(std::vector<double> from, std::vector<double> to, double time) {
   return {make_segment(Oscillator{}), std::move(from), std::move(to), time};
 }
 
-Segment vehicle_midpoint() { return make_segment(scenes::Vehicle{}, "midpoint"); }
+Segment vehicle_midpoint() { return segment("vehicle", {}, "midpoint"); }
 
 }  // namespace carnot::test

@@ -1,4 +1,4 @@
-// Boundary-value problems that several tests use. Scenes are instantiated in problems.cc only.
+// Boundary-value problems that several tests use. The scenes are those of the program.
 #pragma once
 
 #include <vector>
