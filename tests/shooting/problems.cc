@@ -1,5 +1,6 @@
 #include "shooting/problems.h"
 
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -27,6 +28,25 @@ struct Oscillator {
   template <class T>
   [[nodiscard]] T potential(const Vector<T, 2>& q) const {
     return constant<T>(0.5) * (q[0] * q[0] + q[1] * q[1]);
+  }
+};
+
+struct Pendulum {
+  static constexpr int kDof = 1;
+  static constexpr int kMultipliers = 0;
+
+  template <class T>
+  [[nodiscard]] Matrix<T, 1, 1> mass(const Vector<T, 1>& /*q*/) const {
+    return Matrix<T, 1, 1>::Constant(constant<T>(1));
+  }
+  template <class T>
+  [[nodiscard]] Matrix<T, 0, 1> constraints(const Vector<T, 1>& /*q*/) const {
+    return {};
+  }
+  template <class T>
+  [[nodiscard]] T potential(const Vector<T, 1>& q) const {
+    using std::cos;
+    return -cos(q[0]);
   }
 };
 
@@ -70,6 +90,12 @@ BoundaryValueProblem unicycle(std::vector<double> from, std::vector<double> to) 
 BoundaryValueProblem oscillator(std::vector<double> from, std::vector<double> to, double time) {
   return {make_segment(Oscillator{}), std::move(from), std::move(to), time};
 }
+
+BoundaryValueProblem pendulum(double from, double to, double time) {
+  return {make_segment(Pendulum{}), {from}, {to}, time};
+}
+
+Segment vehicle_with_alpha(double alpha) { return segment("vehicle", {{"alpha", alpha}}); }
 
 Segment vehicle_midpoint() { return segment("vehicle", {}, "midpoint"); }
 

@@ -23,6 +23,12 @@ BoundaryValueProblem unicycle(std::vector<double> from, std::vector<double> to);
 // Two equal springs, no constraint: q'' = -q. Every extremal is conjugate, doubly, at t = pi.
 BoundaryValueProblem oscillator(std::vector<double> from, std::vector<double> to, double time);
 
+// q'' = -sin q.
+BoundaryValueProblem pendulum(double from, double to, double time);
+
+// The vehicle with beta = length = 1.
+Segment vehicle_with_alpha(double alpha);
+
 // The midpoint rule on the vehicle.
 Segment vehicle_midpoint();
 

@@ -10,6 +10,7 @@
 #include "carnot/shooting/classification.h"
 #include "carnot/shooting/failure.h"
 #include "carnot/shooting/multiple_shooting.h"
+#include "carnot/shooting/problem_line.h"
 #include "carnot/shooting/ranking.h"
 #include "carnot/shooting/search.h"
 #include "carnot/shooting/windings.h"
@@ -18,19 +19,6 @@ namespace carnot {
 namespace {
 
 constexpr long kFewSteps = 32;  // of the path that does not move
-
-// Translations of the plane are symmetries of the scene: the same problem with `from` at the
-// origin, where coordinates cost no digits.
-BoundaryValueProblem at_origin(const BoundaryValueProblem& problem) {
-  BoundaryValueProblem moved = problem;
-  const Symmetries& symmetries = problem.segment.info.symmetries;
-  for (const int j : {symmetries.x, symmetries.y}) {
-    if (j < 0) continue;
-    moved.to[j] -= moved.from[j];
-    moved.from[j] = 0;
-  }
-  return moved;
-}
 
 // Moves the answer back.
 void move_to(const BoundaryValueProblem& problem, Geodesic& geodesic) {

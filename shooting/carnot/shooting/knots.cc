@@ -32,6 +32,16 @@ Knots knots_of(const BoundaryValueProblem& problem,
   return knots;
 }
 
+Knots knots_of(const Trajectory& samples, int segments) {
+  Knots knots{segments, static_cast<int>(samples.q.front().size()), {}};
+  const std::size_t stride = (samples.t.size() - 1) / segments;
+  for (std::size_t i = 0; i < samples.t.size(); i += stride) {
+    knots.z.insert(knots.z.end(), samples.q[i].begin(), samples.q[i].end());
+    knots.z.insert(knots.z.end(), samples.p[i].begin(), samples.p[i].end());
+  }
+  return knots;
+}
+
 StepPlan knot_plan(const BoundaryValueProblem& problem, int segments, int i, long steps) {
   const double duration = problem.time / segments;
   return StepPlan::equal(i * duration, duration, std::max(1L, (steps + segments - 1) / segments));

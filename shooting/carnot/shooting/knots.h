@@ -30,6 +30,9 @@ Knots knots_of(const BoundaryValueProblem& problem,
                int segments,
                long steps);
 
+// Every so many-th sample of a recorded extremal; `segments` + 1 of them must be equidistant.
+Knots knots_of(const Trajectory& samples, int segments);
+
 // The plan of segment i when the whole time takes about `steps` steps.
 StepPlan knot_plan(const BoundaryValueProblem& problem, int segments, int i, long steps);
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace carnot {
 
@@ -10,8 +9,8 @@ ShootingEquations::ShootingEquations(const BoundaryValueProblem& problem,
                                      const Knots& knots,
                                      long steps)
     : problem_(problem), segments_(knots.segments), dof_(knots.dof), steps_(steps) {
-  double q_scale = std::numeric_limits<double>::min();
-  double p_scale = std::numeric_limits<double>::min();
+  double q_scale = 0;
+  double p_scale = 0;
   for (int j = 0; j < dof_; ++j) {
     q_scale = std::max(q_scale, std::abs(problem.to[j] - problem.from[j]));
   }
@@ -21,6 +20,9 @@ ShootingEquations::ShootingEquations(const BoundaryValueProblem& problem,
       p_scale = std::max(p_scale, std::abs(knots.at(i)[dof_ + j]));
     }
   }
+  constexpr double kRest = 1e-12;  // less is round-off: nothing moves, and any unit will do
+  if (q_scale < kRest) q_scale = 1;
+  if (p_scale < kRest) p_scale = 1;
   scale_.assign(2 * dof_, p_scale);
   std::fill(scale_.begin(), scale_.begin() + dof_, q_scale);
 }
