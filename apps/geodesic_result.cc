@@ -11,20 +11,6 @@
 namespace carnot::apps {
 namespace {
 
-const char* name_of(Label label) {
-  switch (label) {
-    case Label::kLocallyMinimal:
-      return "locally-minimal";
-    case Label::kConjugatePassed:
-      return "conjugate-passed";
-    case Label::kSingular:
-      return "singular";
-    case Label::kUnknown:
-      return "unknown";
-  }
-  return "unknown";
-}
-
 Json geodesic_json(const Geodesic& geodesic, std::size_t rank, bool with_trajectory) {
   const bool single = geodesic.verification == Verification::kSingle;
   Json json;
@@ -159,6 +145,20 @@ std::vector<plots::Curve> curves(const GeodesicReport& report) {
 }
 
 }  // namespace
+
+const char* name_of(Label label) {
+  switch (label) {
+    case Label::kLocallyMinimal:
+      return "locally-minimal";
+    case Label::kConjugatePassed:
+      return "conjugate-passed";
+    case Label::kSingular:
+      return "singular";
+    case Label::kUnknown:
+      return "unknown";
+  }
+  return "unknown";
+}
 
 Result geodesic_result(const GeodesicRequest& request,
                        const GeodesicReport& report,

@@ -18,6 +18,9 @@ struct GeodesicRequest {
   GeodesicOptions options;
 };
 
+// "locally-minimal" and so on.
+const char* name_of(Label label);
+
 Result geodesic_result(const GeodesicRequest& request,
                        const GeodesicReport& report,
                        const std::vector<std::string>& arguments);

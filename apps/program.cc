@@ -91,6 +91,7 @@ void build(CLI::App& app, Invocation& invocation) {
       "--version", std::string("carnot ") + kVersion, "print the version and exit");
   app.footer(kFooter);
   add_geodesic(app, invocation);
+  add_continue(app, invocation);
   add_flow(app, invocation);
   add_scenes(app, invocation);
   add_methods(app, invocation);

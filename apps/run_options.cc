@@ -44,7 +44,7 @@ void check_destination(const Destination& destination, bool no_trajectory) {
 
 }  // namespace
 
-void add_run_options(CLI::App& app, RunOptions& options) {
+void add_model_options(CLI::App& app, RunOptions& options) {
   app.add_option("SCENE", options.scene, "a name from `carnot scenes`")->type_name("");
   app.add_option("--set", options.set, "set a parameter of the scene (repeatable)")
       ->type_name("NAME=VALUE")
@@ -52,21 +52,32 @@ void add_run_options(CLI::App& app, RunOptions& options) {
   app.add_option(
          "--method", options.method, "a name from `carnot methods` (gauss16; rattle with h(q) = 0)")
       ->type_name("NAME");
-  app.add_option("--samples", options.samples, "times in a trajectory, both ends included (201)")
-      ->type_name("N");
-  app.add_flag("--no-trajectory", options.no_trajectory, "leave trajectories out of the JSON");
+}
+
+void add_effort_options(CLI::App& app, RunOptions& options) {
   app.add_option("--seed", options.seed, "fixes all randomness (0)")->type_name("N");
   app.add_option("--threads", options.threads, "threads; the answer does not depend on it (all)")
       ->type_name("N");
-  app.add_option("--plot", options.destination.plot, "draw a .png, .svg, .pdf or .gif")
+}
+
+void add_result_options(CLI::App& app, Destination& destination) {
+  app.add_option("--plot", destination.plot, "draw a .png, .svg, .pdf or .gif")->type_name("FILE");
+  app.add_option("--output", destination.output, "write the result as .json or .csv")
       ->type_name("FILE");
+  app.add_flag("--json", destination.json, "print one JSON object");
+  app.add_flag("--quiet", destination.quiet, "no progress bar");
+}
+
+void add_run_options(CLI::App& app, RunOptions& options) {
+  add_model_options(app, options);
+  app.add_option("--samples", options.samples, "times in a trajectory, both ends included (201)")
+      ->type_name("N");
+  app.add_flag("--no-trajectory", options.no_trajectory, "leave trajectories out of the JSON");
+  add_effort_options(app, options);
   app.add_option(
          "--figure", options.destination.figure_name, "automatic, path, time, energy, overview")
       ->type_name("NAME");
-  app.add_option("--output", options.destination.output, "write the result as .json or .csv")
-      ->type_name("FILE");
-  app.add_flag("--json", options.destination.json, "print one JSON object");
-  app.add_flag("--quiet", options.destination.quiet, "no progress bar");
+  add_result_options(app, options.destination);
 }
 
 void add_table_options(CLI::App& app, Destination& destination) {

@@ -53,6 +53,11 @@ struct Run {
 // The names of a subcommand's own options come first in its help, then these.
 void add_run_options(CLI::App& app, RunOptions& options);
 
+// Parts of these: SCENE, --set, --method; --seed, --threads; --plot, --output, --json, --quiet.
+void add_model_options(CLI::App& app, RunOptions& options);
+void add_effort_options(CLI::App& app, RunOptions& options);
+void add_result_options(CLI::App& app, Destination& destination);
+
 // For tables: --json, --output (.json only), --quiet.
 void add_table_options(CLI::App& app, Destination& destination);
 void check_table_output(const Destination& destination);

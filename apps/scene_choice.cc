@@ -17,28 +17,6 @@ std::vector<std::string> parameter_names(const SceneEntry& entry) {
   return names;
 }
 
-// What `--set` takes for this scene.
-std::string accepted_parameters(const SceneEntry& entry) {
-  if (entry.parameters.empty()) return "no --set: " + entry.info.name + " has no parameters";
-  return fmt::format("NAME=VALUE with NAME one of {}", fmt::join(parameter_names(entry), ", "));
-}
-
-const ParameterInfo& find_parameter(const SceneEntry& entry,
-                                    const std::string& name,
-                                    const std::string& text) {
-  const auto found = std::find_if(entry.parameters.begin(),
-                                  entry.parameters.end(),
-                                  [&](const ParameterInfo& p) { return p.name == name; });
-  if (found == entry.parameters.end()) {
-    const std::string why = fmt::format("{} has no parameter '{}'{}",
-                                        entry.info.name,
-                                        name,
-                                        suggestion(name, parameter_names(entry)));
-    refuse("--set", text, why, accepted_parameters(entry));
-  }
-  return *found;
-}
-
 }  // namespace
 
 const SceneEntry& find_scene(std::string_view name) {
@@ -52,6 +30,35 @@ const SceneEntry& find_scene(std::string_view name) {
   refuse("SCENE", name, "no such scene" + suggestion(name, names), accepted);
 }
 
+std::string accepted_parameters(const SceneEntry& entry) {
+  if (entry.parameters.empty()) return "none: " + entry.info.name + " has no parameters";
+  return fmt::format("NAME=VALUE with NAME one of {}", fmt::join(parameter_names(entry), ", "));
+}
+
+std::pair<std::string, double> parse_parameter(const SceneEntry& entry,
+                                               std::string_view option,
+                                               const std::string& text,
+                                               const std::string& accepted) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) refuse(option, text, "there is no '='", accepted);
+  const std::string name = text.substr(0, equals);
+  const auto found = std::find_if(entry.parameters.begin(),
+                                  entry.parameters.end(),
+                                  [&](const ParameterInfo& p) { return p.name == name; });
+  if (found == entry.parameters.end()) {
+    const std::string why = fmt::format("{} has no parameter '{}'{}",
+                                        entry.info.name,
+                                        name,
+                                        suggestion(name, parameter_names(entry)));
+    refuse(option, text, why, accepted);
+  }
+  const double value = parse_real(fmt::format("{} {}", option, name), text.substr(equals + 1));
+  if (!found->range.contains(value)) {
+    refuse(option, text, "out of range", fmt::format("{} {}", name, found->range.text()));
+  }
+  return {name, value};
+}
+
 ParameterValues parse_parameters(const SceneEntry& entry, const std::vector<std::string>& texts) {
   ParameterValues values;
   for (const ParameterInfo& parameter : entry.parameters) {
@@ -59,16 +66,7 @@ ParameterValues parse_parameters(const SceneEntry& entry, const std::vector<std:
   }
   std::set<std::string> seen;
   for (const std::string& text : texts) {
-    const std::size_t equals = text.find('=');
-    if (equals == std::string::npos) {
-      refuse("--set", text, "there is no '='", accepted_parameters(entry));
-    }
-    const std::string name = text.substr(0, equals);
-    const ParameterInfo& parameter = find_parameter(entry, name, text);
-    const double value = parse_real("--set " + name, text.substr(equals + 1));
-    if (!parameter.range.contains(value)) {
-      refuse("--set", text, "out of range", fmt::format("{} {}", name, parameter.range.text()));
-    }
+    const auto [name, value] = parse_parameter(entry, "--set", text, accepted_parameters(entry));
     if (!seen.insert(name).second) {
       refuse("--set", text, name + " is set twice", "each parameter once");
     }

@@ -47,7 +47,7 @@ TEST_P(BadInputTest, IsRefusedInOneLine) {
 }
 
 const std::vector<BadInput> kProgram{
-    {"", "geodesic, flow, scenes"},
+    {"", "geodesic, continue, flow, scenes"},
     {"''", "SUBCOMMAND ''"},
     {"fly", "'fly'"},
     {"flwo", "did you mean flow?"},

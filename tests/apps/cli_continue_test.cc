@@ -1,0 +1,229 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "command.h"
+
+namespace carnot::apps {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::StartsWith;
+
+using Words = std::vector<std::string>;
+
+Words unicycle(const Words& more) {
+  Words words{"continue", "unicycle", "--from", "0,0,0", "--to", "1,1,0"};
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+// To a target where the extremal of second least action has a fold on the way down.
+Words folding(const Words& more) {
+  Words words{"continue",
+              "heisenberg-group",
+              "--from",
+              "0,0,0",
+              "--to",
+              "0.5,0,0.5",
+              "--rank",
+              "2",
+              "--along",
+              "to=0.5,0,0"};
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+TEST(ContinueCommand, KeepsTheContract) {
+  const Outcome outcome = run(unicycle({"--along", "to=2,1,1", "--json"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = outcome.json();
+  EXPECT_THAT(keys(json),
+              ElementsAre("version",
+                          "arguments",
+                          "scene",
+                          "parameters",
+                          "from",
+                          "to",
+                          "time",
+                          "method",
+                          "along",
+                          "status",
+                          "message",
+                          "points",
+                          "folds",
+                          "branch_points",
+                          "branch_status",
+                          "elapsed_seconds"));
+  EXPECT_EQ(json["status"], "reached");
+  EXPECT_EQ(json["along"].dump(), R"({"name":"to","start":[1,1,0],"end":[2,1,1]})");
+  EXPECT_THAT(keys(json["points"][0]),
+              ElementsAre("branch",
+                          "s",
+                          "value",
+                          "p0",
+                          "lambda0",
+                          "action",
+                          "length",
+                          "verification",
+                          "endpoint_error",
+                          "knot_defect",
+                          "morse_index",
+                          "label"));
+  EXPECT_EQ(json["points"].front()["s"], 0);
+  EXPECT_EQ(json["points"].back()["s"], 1);
+  EXPECT_EQ(json["points"].back()["value"].dump(), "[2,1,1]");
+  for (const auto& point : json["points"]) EXPECT_LE(point["endpoint_error"], 1e-10);
+}
+
+TEST(ContinueCommand, ListsFolds) {
+  const auto json = run(folding({"--json"})).json();
+  EXPECT_EQ(json["status"], "returned");
+  ASSERT_EQ(json["folds"].size(), 1);
+  EXPECT_THAT(json["branch_points"], IsEmpty());
+  const Outcome text = run(folding({}));
+  EXPECT_EQ(text.status, 0);
+  EXPECT_THAT(text.out, HasSubstr("fold at to = (0.5, 0, 0.2808380911)"));
+}
+
+TEST(ContinueCommand, ArrivesWhereSolvingAnewDoes) {
+  for (const Words& change : {Words{"beta=2", "--set", "beta=2"}, Words{"time=2", "--time", "2"}}) {
+    const auto followed = run(unicycle({"--along", change[0], "--json"})).json();
+    ASSERT_EQ(followed["status"], "reached") << change[0];
+    Words anew = unicycle({change[1], change[2], "--json", "--no-trajectory"});
+    anew[0] = "geodesic";
+    const auto solved = run(anew).json();
+    const auto& last = followed["points"].back();
+    EXPECT_EQ(last["value"], 2);
+    EXPECT_NEAR(last["action"], solved["geodesics"][0]["action"], 1e-9);
+    for (int j = 0; j < 3; ++j) {
+      EXPECT_NEAR(last["p0"][j], solved["geodesics"][0]["p0"][j], 1e-8);
+    }
+  }
+}
+
+TEST(ContinueCommand, StartsFromAGuess) {
+  const auto found = run(unicycle({"--along", "from=0.1,0,0", "--json", "--no-labels"})).json();
+  std::string p0 = found["points"][0]["p0"].dump();
+  p0 = p0.substr(1, p0.size() - 2);
+  const auto guessed =
+      run(unicycle({"--along", "from=0.1,0,0", "--guess", p0, "--json", "--no-labels"})).json();
+  EXPECT_EQ(guessed["status"], "reached");
+  EXPECT_TRUE(guessed["points"][0]["morse_index"].is_null());
+  for (int j = 0; j < 3; ++j) {
+    EXPECT_NEAR(guessed["points"].back()["p0"][j], found["points"].back()["p0"][j], 1e-8);
+  }
+}
+
+TEST(ContinueCommand, WritesFiles) {
+  const Sandbox sandbox;
+  const Outcome outcome =
+      sandbox.run(folding({"--quiet", "--plot", "curve.png", "--output", "curve.csv"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  const std::string csv = read_text(sandbox.directory() / "curve.csv");
+  EXPECT_THAT(csv,
+              StartsWith("branch,s,to_x,to_y,to_z,action,length,endpoint_error,knot_defect,"
+                         "morse_index,label,p_x,p_y,p_z\n0,0,0.5,0,0.5,"));
+  EXPECT_GT(std::filesystem::file_size(sandbox.directory() / "curve.png"), 10000U);
+}
+
+TEST(ContinueCommand, StopsAtTheLargestNumberOfPoints) {
+  const Outcome outcome = run(folding({"--max-points", "3", "--json"}));
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.json()["status"], "max_points");
+  EXPECT_EQ(outcome.json()["points"].size(), 3);
+}
+
+TEST(ContinueCommand, NumericalFailureIsOneLine) {
+  const Outcome abnormal = run({"continue",
+                                "vehicle",
+                                "--from",
+                                "0,0,0,0",
+                                "--to",
+                                "0,0,0,1",
+                                "--along",
+                                "to=0,0,0,2",
+                                "--json",
+                                "--quiet"});
+  EXPECT_EQ(abnormal.status, 1);
+  EXPECT_EQ(abnormal.json()["status"], "singular_start");
+  EXPECT_THAT(abnormal.err, StartsWith("carnot: the extremal at the start"));
+  EXPECT_EQ(std::count(abnormal.err.begin(), abnormal.err.end(), '\n'), 1);
+
+  const Outcome astray =
+      run(unicycle({"--along", "to=2,1,1", "--guess", "4000,-2000,1e5", "--json", "--quiet"}));
+  EXPECT_EQ(astray.status, 1);
+  EXPECT_EQ(astray.json()["status"], "not_converged");
+  EXPECT_EQ(std::count(astray.err.begin(), astray.err.end(), '\n'), 1);
+
+  const Outcome rank = run({"continue",
+                            "heisenberg-group",
+                            "--from",
+                            "0,0,0",
+                            "--to",
+                            "1,0,0.1",
+                            "--rank",
+                            "2",
+                            "--along",
+                            "to=1,0,1",
+                            "--quiet"});
+  EXPECT_EQ(rank.status, 1);
+  EXPECT_THAT(rank.err, HasSubstr("--rank"));
+}
+
+TEST(ContinueCommand, BadInputIsOneLine) {
+  const std::vector<std::pair<Words, std::string>> cases{
+      {unicycle({}), "--along"},
+      {unicycle({"--along", "to"}), "there is no '='"},
+      {unicycle({"--along", "bta=2"}), "did you mean beta?"},
+      {unicycle({"--along", "to=1,2"}), "2 numbers given"},
+      {unicycle({"--along", "from=0,0,nan"}), "--along from"},
+      {unicycle({"--along", "beta=-1"}), "out of range"},
+      {unicycle({"--along", "time=0"}), "--along time"},
+      {unicycle({"--along", "time=1"}), "is where it starts"},
+      {unicycle({"--along", "time=2", "--max-points", "0"}), "--max-points"},
+      {unicycle({"--along", "time=2", "--rank", "2", "--guess", "1,2,3"}), "--rank"},
+      {unicycle({"--along", "time=2", "--guess", "1,2"}), "--guess"},
+      {unicycle({"--along", "time=2", "--output", "a.txt"}), "--output"},
+      {{"continue", "unicycle", "--to", "1,0,0", "--along", "time=2"}, "--from"},
+      {{"continue", "rod-skate", "--from", "0,0,1,0", "--to", "1,0,2,0", "--along", "time=2"},
+       "holonomic"}};
+  for (const auto& [words, what] : cases) {
+    const Sandbox sandbox;
+    const Outcome outcome = sandbox.run(words);
+    EXPECT_EQ(outcome.status, 2) << what;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_THAT(outcome.err, HasSubstr(what));
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_THAT(sandbox.files(), IsEmpty());
+  }
+}
+
+TEST(ContinueCommand, CanBeInterrupted) {
+  const Sandbox sandbox;
+  const Outcome outcome = sandbox.run({"continue",
+                                       "vehicle",
+                                       "--set",
+                                       "length=2.5",
+                                       "--from",
+                                       "0,0,0,0",
+                                       "--to",
+                                       "0,1,0,0",
+                                       "--along",
+                                       "to=19,9,1,0",
+                                       "--rank",
+                                       "500",
+                                       "--output",
+                                       "curve.json",
+                                       "--quiet"},
+                                      "timeout --preserve-status -k 10 -s INT 0.5");
+  EXPECT_EQ(outcome.status, 130);
+  EXPECT_THAT(sandbox.files(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace carnot::apps
