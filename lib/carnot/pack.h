@@ -10,6 +10,7 @@
 // scene, which is then evaluated number by number.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -68,9 +69,10 @@ struct Ops {
   static double largest(const Lane& x) {
     std::array<double, kSize> lanes;
     store(x, lanes.data());
-    double most = lanes[0];
-    for (int i = 1; i < kSize; ++i) most = most < lanes[i] ? lanes[i] : most;
-    return most;
+    for (int half = kSize / 2; half > 0; half /= 2) {
+      for (int i = 0; i < half; ++i) lanes[i] = std::max(lanes[i], lanes[i + half]);
+    }
+    return lanes[0];
   }
 };
 
@@ -104,9 +106,13 @@ inline constexpr double kLargestAngle = 1e6;
 
 // sin and cos to 2 ulp for |x| <= kLargestAngle. With x = n pi/2 + r, |r| <= pi/4, n is the nearest
 // integer (adding 1.5 2^52 rounds, and leaves n in the low bits), n pi/2 is subtracted in three
-// parts whose products with n are exact (Cody & Waite 1980), and the polynomials are those of the
-// Cephes library (Moshier 1992), evaluated in pairs so that the chain is short. The quadrant n mod
-// 4 swaps them and sets signs.
+// parts whose products with n are exact (Cody & Waite 1980), and polynomials in r^2 follow,
+// evaluated in pairs so that the chain is short. The quadrant n mod 4 swaps them and sets signs.
+//
+// Errors far below an ulp matter where they are the same on every turn of an angle, for H drifts by
+// them: by 1e-18 of itself and turn, if r is rounded to double. So `rest`, what that rounding
+// leaves, is carried along, and the polynomials are good to 5e-20: least squares on [0, (pi/4)^2]
+// in 60 digits, each coefficient rounded before the next one is found.
 template <class Lane>
 [[gnu::always_inline]] inline SinCos<Lane> sin_cos(const Lane& x) {
   if constexpr (std::is_same_v<Lane, double>) {
@@ -117,28 +123,34 @@ template <class Lane>
     const Lane round(6755399441055744.0);
     const Lane shifted = fma(x, Lane(0.63661977236758134308), round);
     const Lane n = shifted - round;
-    Lane r = x - n * Lane(1.57079632673412561417e+00);
-    r = r - n * Lane(6.07710050630396597660e-11);
-    r = r - n * Lane(2.02226624879595063154e-21);
+    const Lane first = x - n * Lane(1.57079632673412561417e+00);
+    const Lane second = n * Lane(6.07710050630396597660e-11);
+    Lane r = first - second;
+    const Lane rest = ((first - r) - second) - n * Lane(2.02226624879595063154e-21);
     const Lane nan(std::numeric_limits<double>::quiet_NaN());
     r = xsimd::select(xsimd::abs(x) <= Lane(kLargestAngle), r, nan);
     const Lane z = r * r;
     const Lane z2 = z * z;
     const Lane z4 = z2 * z2;
-    const Lane s0 = fma(z, Lane(8.33333333332211858878e-3), Lane(-1.66666666666666307295e-1));
-    const Lane s1 = fma(z, Lane(2.75573136213857245213e-6), Lane(-1.98412698295895385996e-4));
-    const Lane s2 = fma(z, Lane(1.58962301576546568060e-10), Lane(-2.50507477628578072866e-8));
-    const Lane c0 = fma(z, Lane(-1.38888888888730564116e-3), Lane(4.16666666666665929218e-2));
-    const Lane c1 = fma(z, Lane(-2.75573141792967388112e-7), Lane(2.48015872888517045348e-5));
-    const Lane c2 = fma(z, Lane(-1.13585365213876817300e-11), Lane(2.08757008419747316778e-9));
-    const Lane s = fma(fma(z4, s2, fma(z2, s1, s0)), z * r, r);
-    const Lane c = fma(z2, fma(z4, c2, fma(z2, c1, c0)), fnma(z, Lane(0.5), Lane(1)));
+    const Lane s0 = fma(z, Lane(0x1.111111111109ap-7), Lane(-0x1.5555555555555p-3));
+    const Lane s1 = fma(z, Lane(0x1.71de3a44c9fa2p-19), Lane(-0x1.a01a01a00a47fp-13));
+    const Lane s2 = fma(z, Lane(0x1.611863e81a19dp-33), Lane(-0x1.ae644352a5dc4p-26));
+    const Lane s3 = fma(z2, Lane(-0x1.a72510efe0438p-41), s2);
+    const Lane c0 = fma(z, Lane(-0x1.6c16c16c1504cp-10), Lane(0x1.555555555554bp-5));
+    const Lane c1 = fma(z, Lane(-0x1.27e4f7f911e50p-22), Lane(0x1.a01a019c97a13p-16));
+    const Lane c2 = fma(z, Lane(-0x1.8fa9a73e06142p-37), Lane(0x1.1ee9e17e68098p-29));
+    const Lane half = fnma(z, Lane(0.5), Lane(1));
+    const Lane s = r + fma(fma(z4, s3, fma(z2, s1, s0)), z * r, rest * half);
+    const Lane c = half + fma(z2, fma(z4, c2, fma(z2, c1, c0)), -(rest * r));
     const Integer quadrant = xsimd::bitwise_cast<Integer>(shifted);
-    const auto even = xsimd::bitwise_cast<Lane>(quadrant & Integer(1)) == Lane(0.0);
-    const Lane sine_sign = xsimd::bitwise_cast<Lane>((quadrant & Integer(2)) << 62);
-    const Lane cosine_sign =
-        xsimd::bitwise_cast<Lane>(((quadrant + Integer(1)) & Integer(2)) << 62);
-    return {xsimd::select(even, s, c) ^ sine_sign, xsimd::select(even, c, s) ^ cosine_sign};
+    const auto even = (quadrant & Integer(1)) == Integer(0);
+    const Integer sign(std::numeric_limits<std::int64_t>::min());
+    const Integer sine_bits = xsimd::bitwise_cast<Integer>(s);
+    const Integer cosine_bits = xsimd::bitwise_cast<Integer>(c);
+    const Integer sine = xsimd::select(even, sine_bits, cosine_bits) ^ ((quadrant << 62) & sign);
+    const Integer cosine =
+        xsimd::select(even, cosine_bits, sine_bits) ^ (((quadrant + Integer(1)) << 62) & sign);
+    return {xsimd::bitwise_cast<Lane>(sine), xsimd::bitwise_cast<Lane>(cosine)};
   }
 }
 
@@ -293,6 +305,10 @@ class Pack {
 
   typename Ops::Register part_[kParts];
 };
+
+// A width at which two registers are under way at a time, so that one works while the other waits.
+inline constexpr int kPackInFlight =
+    2 * std::max(4, pack_lane::Ops<pack_lane::Widest<8>::type>::kSize);
 
 template <class T>
 struct IsPack : std::false_type {};

@@ -16,8 +16,8 @@
 
 namespace carnot {
 
-// The series of c_k, which reaches round-off for s <= kNearStumpff: even and odd powers apart, so
-// that the chain is short.
+// The series of c_k, which reaches round-off for s <= kNearStumpff, summed in pairs, pairs of pairs
+// and so on (Estrin), so that the chain is short.
 inline constexpr double kNearStumpff = 10;
 
 template <int k, class T>
@@ -33,14 +33,14 @@ T stumpff_series(const T& s) {
     }
     return c;
   }();
-  const T s2 = s * s;
-  T even(kCoefficients[kTerms - 2]);
-  T odd(kCoefficients[kTerms - 1]);
-  for (int j = kTerms - 4; j >= 0; j -= 2) {
-    even = even * s2 + T(kCoefficients[j]);
-    odd = odd * s2 + T(kCoefficients[j + 1]);
+  std::array<T, kTerms> sum;
+  for (int j = 0; j < kTerms; ++j) sum[j] = T(kCoefficients[j]);
+  T power = s;
+  for (int terms = kTerms / 2; terms > 0; terms /= 2) {
+    for (int j = 0; j < terms; ++j) sum[j] = sum[2 * j + 1] * power + sum[2 * j];
+    power = power * power;
   }
-  return odd * s + even;
+  return sum[0];
 }
 
 // On packs, where all lanes go one way.

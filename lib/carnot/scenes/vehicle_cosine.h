@@ -45,14 +45,14 @@ struct VehicleCosine {
   [[nodiscard]] Vector<T, 4> frame_gradient(const Vector<T, 4>& q,
                                             const Vector<T, 4>& p,
                                             const Vector<T, 2>& u) const {
-    using std::cos, std::sin;
     const Vector<T, 2> m = midpoint(q);
     const T slope = stumpff<1>(T(m[0] * m[0] + m[1] * m[1]));
     const T half = constant<T>(0.5 * vehicle.length);
     Vector<T, 4> gradient = vehicle.frame_gradient(q, p, u);
     gradient[0] += slope * m[0];
     gradient[1] += slope * m[1];
-    gradient[2] += slope * half * (m[0] * sin(q[2]) - m[1] * cos(q[2]));
+    const Vector<T, 2> body = heading(q);
+    gradient[2] += slope * half * (m[0] * body[1] - m[1] * body[0]);
     return gradient;
   }
 
@@ -88,9 +88,18 @@ struct VehicleCosine {
  private:
   template <class T>
   [[nodiscard]] Vector<T, 2> midpoint(const Vector<T, 4>& q) const {
-    using std::cos, std::sin;
     const T half = constant<T>(0.5 * vehicle.length);
-    return {q[0] - half * cos(q[2]), q[1] - half * sin(q[2])};
+    const Vector<T, 2> body = heading(q);
+    return {q[0] - half * body[0], q[1] - half * body[1]};
+  }
+  // (cos theta, sin theta) by phi and phi - theta, which the frame asks for too.
+  template <class T>
+  [[nodiscard]] static Vector<T, 2> heading(const Vector<T, 4>& q) {
+    using std::cos, std::sin;
+    const T delta = q[3] - q[2];
+    const Vector<T, 2> phi(cos(q[3]), sin(q[3]));
+    const Vector<T, 2> turn(cos(delta), sin(delta));
+    return {phi[0] * turn[0] + phi[1] * turn[1], phi[1] * turn[0] - phi[0] * turn[1]};
   }
 };
 
