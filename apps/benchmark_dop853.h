@@ -14,12 +14,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <limits>
-#include <string_view>
 #include <utility>
 
-#include "carnot/dop853_tableau.h"
+#include "carnot/dop853_embedded.h"
 
 namespace carnot::apps {
 
@@ -29,64 +26,6 @@ struct Dop853Report {
   long rejected = 0;
   long evaluations = 0;
 };
-
-namespace dop853 {
-
-// A decimal number, wrong by an ulp of long double at most before it is rounded.
-consteval double parse(std::string_view text) {
-  constexpr std::uint64_t kFull = std::numeric_limits<std::uint64_t>::max() / 10 - 1;
-  std::uint64_t digits = 0;
-  long double power = 1;
-  bool negative = false;
-  bool fraction = false;
-  for (const char c : text) {
-    if (c == '-') negative = true;
-    if (c == '.') fraction = true;
-    if (c < '0' || c > '9' || digits > kFull) continue;
-    digits = 10 * digits + static_cast<std::uint64_t>(c - '0');
-    if (fraction) power *= 10;
-  }
-  const long double value = static_cast<long double>(digits) / power;
-  return static_cast<double>(negative ? -value : value);
-}
-
-inline constexpr int kStages = 12;
-using Weights = std::array<double, kStages>;
-
-// Row i of a_ij, from 0; row 12 is b.
-inline constexpr std::array<Weights, kStages + 1> kA = [] {
-  std::array<Weights, kStages + 1> a{};
-  const auto set = [&a]<std::size_t... k>(std::index_sequence<k...>) {
-    ((a[kDop853[k].i - 1][kDop853[k].j - 1] = parse(kDop853[k].value)), ...);
-  };
-  set(std::make_index_sequence<kDop853.size()>{});
-  return a;
-}();
-
-// b minus the weights of order 5.
-inline constexpr Weights kError5 = {parse("0.01312004499419488073250102996"),
-                                    0,
-                                    0,
-                                    0,
-                                    0,
-                                    parse("-1.225156446376204440720569753"),
-                                    parse("-0.4957589496572501915214079952"),
-                                    parse("1.664377182454986536961530415"),
-                                    parse("-0.3503288487499736816886487290"),
-                                    parse("0.3341791187130174790297318841"),
-                                    parse("0.08192320648511571246570742613"),
-                                    parse("-0.02235530786388629525884427845")};
-
-// b minus the weights of order 3.
-inline constexpr Weights kError3 = [] {
-  Weights e = kA[kStages];
-  e[0] -= parse("0.244094488188976377952755905512");
-  e[8] -= parse("0.733846688281611857361341741547");
-  e[11] -= parse("0.0220588235294117647058823529412");
-  return e;
-}();
-
-}  // namespace dop853
 
 // Rate: kSize and void operator()(const double* z, double* f) const; autonomous.
 template <class Rate>
@@ -156,20 +95,10 @@ class AdaptiveDop853 {
     ++report.evaluations;
   }
 
-  // sum_j w_j k_j over the weights that are not zero.
-  template <const dop853::Weights& w, std::size_t... j>
-  [[nodiscard]] double weighted(int i, std::index_sequence<j...> /*all*/) const {
-    double sum = 0;
-    (add<w[j]>(sum, k_[j][i]), ...);
-    return sum;
-  }
-  template <double w>
-  static void add(double& sum, double k) {
-    if constexpr (w != 0) sum += w * k;
-  }
+  // sum_j w_j k_j.
   template <const dop853::Weights& w>
   [[nodiscard]] double weighted(int i) const {
-    return weighted<w>(i, std::make_index_sequence<dop853::kStages>{});
+    return dop853::weighted<w>(0.0, [&](int j) { return k_[j][i]; });
   }
 
   // y + h sum_j a_ij k_j.

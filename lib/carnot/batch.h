@@ -1,4 +1,4 @@
-// Many trajectories of one system, eight to a pack where that is faster, packs on several threads.
+// Many trajectories of one system, side by side in packs, packs on several threads.
 //
 // What goes into a pack depends on the order of the trajectories alone, so the answer has the same
 // bits whatever the number of threads.
@@ -37,8 +37,8 @@ BatchReport batch_of(int count, int threads, const Work& work) {
 }
 
 // Advances `count` phase points, rows of 2n numbers in `z`, by `duration` with DOP853 and common
-// steps for each eight; error of about `tolerance` each, not symplectic. A pack that fails is tried
-// again one by one. Cost: that of one trajectory per pack, and a fifth more. threads = 0: all.
+// steps for each pack; error of about `tolerance` each, not symplectic. A pack that fails is tried
+// again one by one. Cost: a fifth to a seventh of a trajectory alone, each. threads = 0: all cores.
 template <class System>
 BatchReport adaptive_batch(const System& system,
                            double start,
@@ -47,22 +47,25 @@ BatchReport adaptive_batch(const System& system,
                            int count,
                            double* z,
                            int threads) {
-  constexpr int kLanes = 8;
+  constexpr int kLanes = kPackInFlight;
   constexpr int size = 2 * System::kDof;
   using Rows = std::array<double, size * kLanes>;
   const auto advance = [&](int first, int lanes, BatchReport& report) {
     alignas(64) Rows rows;
-    for (int l = 0; l < kLanes; ++l) {
+    const int width = lanes > kLanes / 2 ? kLanes : kLanes / 2;
+    for (int l = 0; l < width; ++l) {
       const double* const from = z + (first + std::min(l, lanes - 1)) * size;
-      for (int k = 0; k < size; ++k) rows[k * kLanes + l] = from[k];
+      for (int k = 0; k < size; ++k) rows[k * width + l] = from[k];
     }
     const AdaptiveReport run =
-        dop853_adaptive<kLanes>(system, start, duration, tolerance, rows.data());
+        width == kLanes
+            ? dop853_adaptive<kLanes>(system, start, duration, tolerance, rows.data())
+            : dop853_adaptive<kLanes / 2>(system, start, duration, tolerance, rows.data());
     report.evaluations += run.evaluations * lanes;
     if (!run.completed && lanes > 1) return false;
     for (int l = 0; l < lanes; ++l) {
       for (int k = 0; k < size; ++k) {
-        z[(first + l) * size + k] = run.completed ? rows[k * kLanes + l] : std::nan("");
+        z[(first + l) * size + k] = run.completed ? rows[k * width + l] : std::nan("");
       }
     }
     (run.completed ? report.completed : report.failed) += lanes;

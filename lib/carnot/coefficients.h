@@ -13,7 +13,7 @@ using Wider = std::conditional_t<std::is_same_v<T, double>, long double, T>;
 
 // The number written as "-12.345", to two units of round-off of T, whatever T.
 template <class T>
-T decimal(std::string_view text) {
+constexpr T decimal(std::string_view text) {
   const bool negative = text.front() == '-';
   if (negative) text.remove_prefix(1);
   const std::size_t point = text.find('.');

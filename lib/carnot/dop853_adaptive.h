@@ -13,57 +13,22 @@
 #include <array>
 #include <cmath>
 
-#include "carnot/dop853_tableau.h"
+#include "carnot/dop853_embedded.h"
 #include "carnot/packed_rate.h"
 
 namespace carnot {
 
-namespace dop853_steps {
+namespace dop853 {
 
-inline constexpr int kStages = 12;
-
-struct Coefficients {
-  std::array<std::array<double, kStages>, kStages + 1> a{};  // the last row is b
-  std::array<double, kStages> c{};
-  std::array<double, kStages> third{};  // b minus the method of order 3
-  std::array<double, kStages> fifth{};  // b minus the method of order 5
-};
-
-inline const Coefficients& coefficients() {
-  static const Coefficients kCoefficients = [] {
-    Coefficients k;
-    const Tableau<double> tableau = dop853_tableau<double>();
-    for (const Dop853Entry& entry : kDop853) {
-      k.a[entry.i - 1][entry.j - 1] = decimal<double>(entry.value);
-    }
-    for (int i = 0; i < kStages; ++i) k.c[i] = tableau.c[i];
-    k.third = k.a[kStages];
-    k.third[0] -= decimal<double>("0.244094488188976377952755905512");
-    k.third[8] -= decimal<double>("0.733846688281611857341361741547");
-    k.third[11] -= decimal<double>("0.0220588235294117647058823529412");
-    k.fifth[0] = decimal<double>("0.01312004499419488073250102996");
-    k.fifth[5] = decimal<double>("-1.225156446376204440720569753");
-    k.fifth[6] = decimal<double>("-0.4957589496572501915214079952");
-    k.fifth[7] = decimal<double>("1.664377182454986536961530415");
-    k.fifth[8] = decimal<double>("-0.3503288487499736816886487290");
-    k.fifth[9] = decimal<double>("0.3341791187130174790297318841");
-    k.fifth[10] = decimal<double>("0.08192320648511571246570742613");
-    k.fifth[11] = decimal<double>("-0.02235530786388629525884427845");
-    return k;
-  }();
-  return kCoefficients;
-}
-
-// row k of `to` <- row k of z + h sum_j weight_j (row k of f_j).
-template <int size, int W, int stages>
-[[gnu::flatten, gnu::noinline]] void combine(
-    const double* z, double h, const double* weights, const double* f, double* to) {
+// row k of `to` <- row k of z + h sum_j w_j (row k of f_j).
+template <const Weights& w, int size, int W>
+[[gnu::flatten, gnu::noinline]] void combine(const double* z,
+                                             double h,
+                                             const double* f,
+                                             double* to) {
   using P = Pack<W>;
   for (int k = 0; k < size; ++k) {
-    P sum(0);
-    for (int j = 0; j < stages; ++j) {
-      if (weights[j] != 0) sum += P(weights[j]) * P::load(f + (j * size + k) * W);
-    }
+    const P sum = weighted<w>(P(0), [&](int j) { return P::load(f + (j * size + k) * W); });
     (P::load(z + k * W) + P(h) * sum).store(to + k * W);
   }
 }
@@ -74,21 +39,13 @@ template <int size, int W>
 [[gnu::flatten, gnu::noinline]] double error_ratio(
     const double* z, const double* end, double h, double tolerance, const double* f) {
   using P = Pack<W>;
-  const Coefficients& k = coefficients();
   P fifth_square(0);
   P third_square(0);
   for (int i = 0; i < size; ++i) {
-    P fifth(0);
-    P third(0);
-    for (int j = 0; j < kStages; ++j) {
-      if (k.fifth[j] == 0 && k.third[j] == 0) continue;
-      const P rate = P::load(f + (j * size + i) * W);
-      fifth += P(k.fifth[j]) * rate;
-      third += P(k.third[j]) * rate;
-    }
+    const auto rate = [&](int j) { return P::load(f + (j * size + i) * W); };
     const P scale = P(tolerance) * (P(1) + max(abs(P::load(z + i * W)), abs(P::load(end + i * W))));
-    const P fifth_ratio = fifth / scale;
-    const P third_ratio = third / scale;
+    const P fifth_ratio = weighted<kError5>(P(0), rate) / scale;
+    const P third_ratio = weighted<kError3>(P(0), rate) / scale;
     fifth_square += fifth_ratio * fifth_ratio;
     third_square += third_ratio * third_ratio;
   }
@@ -96,7 +53,7 @@ template <int size, int W>
   return largest(P(std::abs(h)) * fifth_square / scale);
 }
 
-}  // namespace dop853_steps
+}  // namespace dop853
 
 struct AdaptiveReport {
   bool completed = false;
@@ -111,7 +68,7 @@ struct AdaptiveReport {
 template <int W, class System>
 AdaptiveReport dop853_adaptive(
     const System& system, double start, double duration, double tolerance, double* z) {
-  using namespace dop853_steps;
+  using namespace dop853;
   constexpr int size = 2 * System::kDof;
   constexpr double kSafety = 0.8;
   constexpr double kMostShrink = 0.333;
@@ -121,7 +78,7 @@ AdaptiveReport dop853_adaptive(
   alignas(64) std::array<double, size * W> stage;
   alignas(64) std::array<double, System::kAlgebraic * W> y;
   alignas(64) std::array<double, W> time;
-  const Coefficients& k = coefficients();
+  static const Tableau<double> kTableau = dop853_tableau<double>();
   AdaptiveReport report;
   const auto rate = [&](double t, const double* at, int i) {
     time.fill(t);
@@ -150,14 +107,14 @@ AdaptiveReport dop853_adaptive(
     const double t = start + duration - sign * left;
     bool ok = true;
     const auto stages = [&]<int... i>(std::integer_sequence<int, i...>) {
-      ((combine<size, W, i + 1>(z, step, k.a[i + 1].data(), f.data(), stage.data()),
-        ok = ok && rate(t + k.c[i + 1] * step, stage.data(), i + 1)),
+      ((combine<kA[i + 1], size, W>(z, step, f.data(), stage.data()),
+        ok = ok && rate(t + kTableau.c[i + 1] * step, stage.data(), i + 1)),
        ...);
     };
     stages(std::make_integer_sequence<int, kStages - 1>{});
     double ratio = INFINITY;
     if (ok) {
-      combine<size, W, kStages>(z, step, k.a[kStages].data(), f.data(), stage.data());
+      combine<kA[kStages], size, W>(z, step, f.data(), stage.data());
       ratio = error_ratio<size, W>(z, stage.data(), step, tolerance, f.data());
     }
     const double growth =

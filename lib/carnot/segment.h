@@ -101,7 +101,7 @@ struct Segment {
       if (!run.completed()) std::fill_n(point, 2 * dof, std::nan(""));
     });
   }
-  // The same with an error of about `tolerance` each, eight side by side with an explicit method of
+  // The same with an error of about `tolerance` each, side by side with an explicit method of
   // order 8 and adaptive steps: fast, and not symplectic. Only where has_adaptive_batch().
   [[nodiscard]] BatchReport adaptive_batch(double start,
                                            double duration,
