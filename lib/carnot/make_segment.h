@@ -1,6 +1,7 @@
 // Segments of a scene: the templates of the core behind the function pointers of segment.h.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -17,6 +18,7 @@
 #include "carnot/system_of.h"
 #include "carnot/tangent_flow.h"
 #include "carnot/transcription_calls.h"
+#include "carnot/winding.h"
 
 namespace carnot {
 
@@ -34,6 +36,7 @@ struct Bound {
   System system;
   std::decay_t<decltype(std::declval<const Stepper&>().tableau())> tableau;
   Vector<double, m> branch = Vector<double, m>::Zero();
+  Winding<n> winding = {};
 
   [[nodiscard]] Stepper stepper() const {
     Stepper step(system, tableau);
@@ -52,8 +55,12 @@ template <class B>
 FlowReport flow(const void* opaque, const StepPlan& plan, double* z) {
   auto stepper = B::from(opaque).stepper();
   auto state = load<B>(z);
-  const FlowReport report = carnot::flow(stepper, plan, state);
-  view<2 * B::n>(z) = state.value;
+  auto winding = B::from(opaque).winding;
+  const FlowReport report = carnot::flow(stepper, plan, state, [&](long, const auto&, auto& node) {
+    winding.fold(node);
+    return true;
+  });
+  view<2 * B::n>(z) = winding.unfolded(state).value;
   return report;
 }
 
@@ -110,16 +117,17 @@ FlowSummary audited_flow(const void* opaque,
       options.times.empty() ? sample_times(plan, options.samples) : options.times,
       stepper,
       state);
+  auto winding = bound.winding;
   FlowSummary summary;
-  summary.report =
-      carnot::flow(stepper, plan, state, [&](long i, const Stepper& step, const auto& node) {
-        audit(plan.time(i + 1), step, node);
-        if (!std::isfinite(audit.energy_drift())) return false;
-        recorder(i, step, node);
-        if (!options.progress || i % kProgressEvery != 0) return true;
-        return options.progress(static_cast<double>(i) / static_cast<double>(plan.count));
-      });
-  view<2 * B::n>(z) = state.value;
+  summary.report = carnot::flow(stepper, plan, state, [&](long i, const Stepper& step, auto& node) {
+    audit(plan.time(i + 1), step, node);
+    if (!std::isfinite(audit.energy_drift())) return false;
+    recorder(i, step, winding.unfolded(node));
+    winding.fold(node);
+    if (!options.progress || i % kProgressEvery != 0) return true;
+    return options.progress(static_cast<double>(i) / static_cast<double>(plan.count));
+  });
+  view<2 * B::n>(z) = winding.unfolded(state).value;
   if (!std::isfinite(audit.energy_drift())) {
     summary.report.status = FlowStatus::kStepFailed;
     summary.report.last.status = StepStatus::kRateFailed;
@@ -242,6 +250,9 @@ Segment bind(const Scene& scene, const Method& method, B bound) {
   segment.order = method.order;
   segment.symplectic = method.symplectic;
   segment.info = describe_scene(scene);
+  std::array<double, B::n> periods{};
+  for (int i = 0; i < B::n; ++i) periods[i] = segment.info.configuration[i].period;
+  bound.winding = Winding<B::n>(periods);
   segment.system = std::make_shared<const B>(std::move(bound));
   segment.calls.flow = flow<B>;
   segment.calls.tangent_flow = tangent_flow<B>;
