@@ -35,46 +35,26 @@ struct AutomaticFlow {
   long evaluations = 0;  // of all runs and the trial
 };
 
-// Estimated error of a step from the decay of its Legendre coefficients.
+// Estimated error of the step just done, from the decay of its Legendre coefficients.
 template <class Stepper>
-class StepError {
- public:
+typename Stepper::Scalar step_error(const Stepper& step) {
   using T = typename Stepper::Scalar;
-  static constexpr int s = Stepper::kMaxStages;
+  constexpr int s = Stepper::kMaxStages;
   static_assert(s >= 3 && Stepper::Stages::ColsAtCompileTime == s);
-
-  explicit StepError(const Stepper& step) {
-    for (int i = 0; i < s; ++i) {
-      const T x = T(2) * step.tableau().c[i] - T(1);
-      T before(0);
-      T legendre(1);
-      for (int k = 0; k < s; ++k) {
-        weights_(k, i) = T(2 * k + 1) * legendre;
-        const T next = (T(2 * k + 1) * x * legendre - T(k) * before) / T(k + 1);
-        before = legendre;
-        legendre = next;
-      }
-    }
+  constexpr int kLow = std::max(0, s - 6);
+  constexpr T kHigh = T(s) - T(1.5);
+  constexpr T kExponent = (T(2 * s) - kHigh) / (kHigh - T(kLow) - T(0.5));
+  const auto& legendre = step.tableau().legendre;
+  Vector<T, s> size;
+  if constexpr (Stepper::kRows) {
+    packed_sizes<Stepper::kSize, s>(legendre.data(), step.increments().data(), size.data());
+  } else {
+    size = (legendre * step.increments().transpose()).cwiseAbs().rowwise().maxCoeff();
   }
-
-  [[nodiscard]] T operator()(const Stepper& step) const {
-    Vector<T, s> size;
-    if constexpr (Stepper::kRows) {
-      packed_sizes<Stepper::kSize, s>(weights_.data(), step.increments().data(), size.data());
-    } else {
-      size = (weights_ * step.increments().transpose()).cwiseAbs().rowwise().maxCoeff();
-    }
-    const T low = std::max(size[kLow], size[kLow + 1]);
-    const T high = std::max(size[s - 2], size[s - 1]);
-    constexpr T kHigh = T(s) - T(1.5);
-    constexpr T kExponent = (T(2 * s) - kHigh) / (kHigh - T(kLow) - T(0.5));
-    return low > T(0) ? high * std::pow(high / low, kExponent) : T(0);
-  }
-
- private:
-  static constexpr int kLow = std::max(0, s - 6);
-  alignas(64) Matrix<T, s, s> weights_;  // row k: L -> a_k
-};
+  const T low = std::max(size[kLow], size[kLow + 1]);
+  const T high = std::max(size[s - 2], size[s - 1]);
+  return low > T(0) ? high * std::pow(high / low, kExponent) : T(0);
+}
 
 namespace automatic {
 
@@ -124,7 +104,7 @@ Trial<Stepper> trial(const Stepper& fresh,
   Trial<Stepper> trial;
   trial.z = initial;
   Stepper stepper = beginner(fresh, kTrialIterations);
-  const StepError<Stepper> estimate(stepper);
+  stepper.extrapolate_cautiously();
   const int order = stepper.tableau().order;
   // The speed of z, as of the last step; at first that of the start.
   Vector<double, Stepper::kSize> rate;
@@ -144,7 +124,7 @@ Trial<Stepper> trial(const Stepper& fresh,
     trial.evaluations += report.evaluations;
     const double moved = stepper.increments().cwiseAbs().rowwise().sum().maxCoeff();
     if (report.status == StepStatus::kOk) speed = moved / length;
-    const double error = report.status == StepStatus::kOk ? estimate(stepper) : INFINITY;
+    const double error = report.status == StepStatus::kOk ? step_error(stepper) : INFINITY;
     if (!(error <= kUnresolved * moved)) {
       trial.error *= std::pow(kShrink, order);
       h *= kShrink;

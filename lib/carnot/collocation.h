@@ -10,6 +10,7 @@
 // All is computed in a wider type, then rounded once.
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "carnot/coefficients.h"
@@ -49,6 +50,26 @@ T rounded_with_complement(const Wide& x) {
   return x >= Wide(1) / Wide(2) ? T(x) : T(1) - T(Wide(1) - x);
 }
 
+// The weights of Legendre coefficients and of the continuation by the first of them, from nodes and
+// weights.
+template <class T>
+void set_legendre(Tableau<T>& tableau) {
+  constexpr int kKept = 4;
+  const int s = tableau.stages();
+  tableau.legendre.resize(s, s);
+  tableau.cautious.setZero(s, s);
+  for (int j = 0; j < s; ++j) {
+    const LegendreValues<T> at = legendre(s, T(T(2) * tableau.c[j] - T(1)));
+    for (int k = 0; k < s; ++k) tableau.legendre(k, j) = T(2 * k + 1) * at[k];
+  }
+  for (int i = 0; i < s; ++i) {
+    const LegendreValues<T> beyond = legendre(s, T(T(2) * tableau.c[i] + T(1)));
+    for (int k = 0; k < std::min(kKept, s); ++k) {
+      tableau.cautious.row(i) += tableau.omega[i] * beyond[k] * tableau.legendre.row(k);
+    }
+  }
+}
+
 // The tableau rounded to T: order, nodes, weights and extrapolation. Of mu only the size is set.
 template <class T, class Wide>
 Tableau<T> rounded_but_mu(const Tableau<Wide>& wide) {
@@ -61,6 +82,7 @@ Tableau<T> rounded_but_mu(const Tableau<Wide>& wide) {
   tableau.mu.resize(wide.stages(), wide.stages());
   tableau.extrapolation = wide.extrapolation.template cast<T>();
   set_weights(tableau);
+  set_legendre(tableau);
   return tableau;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "carnot/gradient.h"
 #include "carnot/index_one_system.h"
 #include "carnot/pack.h"
 
@@ -38,16 +39,45 @@ template <int W, class System, class Lane = typename pack_lane::Widest<W>::type>
   return true;
 }
 
+// d(z_dot)/dz at W points side by side: entry (r, c) of all is row 2n r + c of `jacobian`, times
+// the row `weights`. The rate on Jets of packs with 2n directions. False when some lane fails.
+template <int W, class System>
+[[gnu::flatten, gnu::noinline]] bool packed_jacobian(const System& system,
+                                                     const double* t,
+                                                     const double* z,
+                                                     const double* weights,
+                                                     double* jacobian) {
+  constexpr int n = System::kDof;
+  using P = Pack<W>;
+  using J = Jet<P, 2 * n>;
+  Vector<P, 2 * n> point;
+  for (int i = 0; i < 2 * n; ++i) point[i] = P::load(z + i * W);
+  const Vector<J, 2 * n> seeds = seeded(point);
+  const Vector<J, n> q = seeds.template head<n>();
+  const Vector<J, n> p = seeds.template tail<n>();
+  Vector<J, System::kAlgebraic> y;
+  Rate<J, n> rate;
+  if (system.rate(J(P::load(t)), q, p, y, rate) != RateStatus::kOk) return false;
+  const P weight = P::load(weights);
+  for (int r = 0; r < n; ++r) {
+    for (int c = 0; c < 2 * n; ++c) {
+      (weight * rate.q_dot[r].v[c]).store(jacobian + (2 * n * r + c) * W);
+      (weight * rate.p_dot[r].v[c]).store(jacobian + (2 * n * (n + r) + c) * W);
+    }
+  }
+  return true;
+}
+
 // The same for columns first, ..., first + count - 1 of matrices with a column for each point, up
 // to W of them; idle lanes repeat the last.
 template <int W, class System, class Points, class Algebraic>
-bool packed_columns(const System& system,
-                    const double* t,
-                    int first,
-                    int count,
-                    const Points& z,
-                    Algebraic& y,
-                    Points& z_dot) {
+bool columns_in_pack(const System& system,
+                     const double* t,
+                     int first,
+                     int count,
+                     const Points& z,
+                     Algebraic& y,
+                     Points& z_dot) {
   constexpr int size = 2 * System::kDof;
   constexpr int m = System::kAlgebraic;
   alignas(64) std::array<double, W> time;
@@ -67,6 +97,19 @@ bool packed_columns(const System& system,
     for (int k = 0; k < m; ++k) y(k, first + l) = solutions[k * W + l];
   }
   return true;
+}
+
+// Up to eight of them, in a pack of four where that will do.
+template <class System, class Points, class Algebraic>
+bool packed_columns(const System& system,
+                    const double* t,
+                    int first,
+                    int count,
+                    const Points& z,
+                    Algebraic& y,
+                    Points& z_dot) {
+  return count > 4 ? columns_in_pack<8>(system, t, first, count, z, y, z_dot)
+                   : columns_in_pack<4>(system, t, first, count, z, y, z_dot);
 }
 
 }  // namespace carnot

@@ -14,14 +14,13 @@
 // the scale of the components; or, where a run is asked for a tolerance, until no stage changes by
 // more than stop_at(). If that is not reached, Newton's method takes over.
 //
-// Rates of coupled stages are evaluated side by side in packs of eight where the system allows it,
-// and one by one where one of them fails, which tells the reason.
+// Rates of coupled stages are evaluated side by side in packs where the system allows it, and one
+// by one where one of them fails, which tells the reason.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <cmath>
 #include <limits>
 #include <type_traits>
 
@@ -71,6 +70,8 @@ class RungeKutta {
   }
   // The largest change of a stage, in absolute value, at which the iteration ends; 0: at round-off.
   void stop_at(T change) { stop_ = change; }
+  // A first guess for steps so long that the polynomial of the last one is no good beyond it.
+  void extrapolate_cautiously() { extrapolation_ = &tableau_.cautious; }
   // Gives up after so many iterations; no Newton's method.
   void only_iterate(int most) {
     most_iterations_ = most;
@@ -82,10 +83,8 @@ class RungeKutta {
   // Advances z from t to t + h. On failure z and the branch are unchanged. Allocates nothing.
   [[nodiscard]] StepReport step(const T& t, const T& h, State<T, kDof>& z) {
     StepReport report;
-    if (!z.value.allFinite()) {
-      (void)fail(RateStatus::kNotFinite, report);
-      return report;
-    }
+    if (!z.value.allFinite()) (void)fail(RateStatus::kNotFinite, report);
+    if (report.status != StepStatus::kOk) return report;
     const int count = tableau_.stages();
     if (coupled()) {
       solve({t, h, z, 0, count}, report);
@@ -196,7 +195,7 @@ class RungeKutta {
 
   // The same for all stages of the block.
   bool evaluate_all(const Block& block, StepReport& report) {
-    if constexpr (kPacks) {
+    if constexpr (kPacks && !kRows) {
       if (block.end() - block.begin() > 1) {
         if (evaluate_packs(block, report)) return true;
         if (!with_newton_) return fail(RateStatus::kNotFinite, report);
@@ -210,29 +209,16 @@ class RungeKutta {
 
   // Side by side, eight at a time. False where a rate fails.
   bool evaluate_packs(const Block& block, StepReport& report) {
-    if constexpr (kRows) {
-      alignas(64) std::array<T, kLanes> time;
-      for (int l = 0; l < kLanes; ++l) time[l] = block.t + tableau_.c[l] * block.h;
-      if (!packed_rate<kLanes>(
-              system_, time.data(), stages_.data(), algebraic_.data(), increments_.data())) {
-        return false;
+    for (int first = block.begin(); first < block.end(); first += kLanes) {
+      const int count = std::min(kLanes, block.end() - first);
+      std::array<T, kLanes> time;
+      for (int l = 0; l < count; ++l) time[l] = block.t + tableau_.c[first + l] * block.h;
+      const double* const t = time.data();
+      if (!packed_columns(system_, t, first, count, stages_, algebraic_, increments_)) return false;
+      for (int i = first; i < first + count; ++i) {
+        increments_.col(i) *= block.h * tableau_.omega[i];
       }
-      packed_increments<kSize, s>(block.h, tableau_.omega.data(), increments_.data());
-      report.evaluations += kLanes;
-    } else {
-      for (int first = block.begin(); first < block.end(); first += kLanes) {
-        const int count = std::min(kLanes, block.end() - first);
-        std::array<T, kLanes> time;
-        for (int l = 0; l < count; ++l) time[l] = block.t + tableau_.c[first + l] * block.h;
-        if (!packed_columns<kLanes>(
-                system_, time.data(), first, count, stages_, algebraic_, increments_)) {
-          return false;
-        }
-        for (int i = first; i < first + count; ++i) {
-          increments_.col(i) *= block.h * tableau_.omega[i];
-        }
-        report.evaluations += count;
-      }
+      report.evaluations += count;
     }
     report.rate = RateStatus::kOk;
     return true;
@@ -253,9 +239,9 @@ class RungeKutta {
     if (coupled()) {
       if (!repeated) return constant_guess(block, report);
       if constexpr (kRows) {
-        packed_extrapolation<kSize, s>(tableau_.extrapolation.data(), increments_.data());
+        packed_extrapolation<kSize, s>(extrapolation_->data(), increments_.data());
       } else {
-        increments_ = Stages(increments_.lazyProduct(tableau_.extrapolation.transpose()));
+        increments_ = Stages(increments_.lazyProduct(extrapolation_->transpose()));
       }
       return true;
     }
@@ -281,21 +267,36 @@ class RungeKutta {
     return true;
   }
 
-  // New stages from the increments. Returns their largest change; `change` is that of each
-  // component, where it is asked for.
-  T update_stages(const Block& block, Stages& next, Point* change) {
+  // One iteration: new stages, and the increments there. Largest change of a stage, NaN where a
+  // rate fails; `change` is that of each component, where it is asked for.
+  T sweep(const Block& block, Stages& next, Point* change, StepReport& report) {
     if constexpr (kRows) {
-      return packed_stages<kSize, s>(tableau_.mu.data(),
-                                     block.z.value.data(),
-                                     block.z.compensation.data(),
-                                     increments_.data(),
-                                     stages_.data(),
-                                     change == nullptr ? nullptr : change->data());
+      alignas(64) std::array<T, kLanes> time;
+      alignas(64) std::array<T, kLanes> weights;
+      for (int l = 0; l < kLanes; ++l) {
+        time[l] = block.t + tableau_.c[l] * block.h;
+        weights[l] = block.h * tableau_.omega[l];
+      }
+      const Sweep sweep = packed_sweep<System, s>(system_,
+                                                  time.data(),
+                                                  tableau_.mu.data(),
+                                                  weights.data(),
+                                                  block.z.value.data(),
+                                                  block.z.compensation.data(),
+                                                  stages_.data(),
+                                                  algebraic_.data(),
+                                                  increments_.data(),
+                                                  change == nullptr ? nullptr : change->data());
+      report.evaluations += kLanes;
+      if (sweep.ok || (with_newton_ && evaluate_all(block, report))) return sweep.change;
+      if (!with_newton_) (void)fail(RateStatus::kNotFinite, report);
+      return std::numeric_limits<T>::quiet_NaN();
     } else {
       set_stages(block, next);
       const Point moved = (block.of(next) - block.of(stages_)).cwiseAbs().rowwise().maxCoeff();
       if (change != nullptr) *change = moved;
       block.of(stages_) = block.of(next);
+      if (!evaluate_all(block, report)) return std::numeric_limits<T>::quiet_NaN();
       return moved.maxCoeff();
     }
   }
@@ -311,9 +312,8 @@ class RungeKutta {
     Stages next = stages_;
     T limit = std::numeric_limits<T>::infinity();
     for (int iteration = 0; iteration < most_iterations_; ++iteration) {
-      const T change = update_stages(block, next, nullptr);
+      const T change = sweep(block, next, nullptr, report);
       if (!(change <= limit)) return false;
-      if (!evaluate_all(block, report)) return false;
       if (change <= stop_) return true;
       if (iteration == 1) limit = kRunsAway * change;
     }
@@ -326,8 +326,7 @@ class RungeKutta {
     Stages next = stages_;
     Point change;
     for (int iteration = 0; iteration < most_iterations_; ++iteration) {
-      (void)update_stages(block, next, &change);
-      if (!evaluate_all(block, report)) return false;
+      if (!(sweep(block, next, &change, report) >= T(0))) return false;
       const auto verdict = rule(change);
       if (verdict == Rule::Verdict::kAtRest) return true;
       if (verdict == Rule::Verdict::kStalled) return settled(block, change);
@@ -385,6 +384,7 @@ class RungeKutta {
 
   const System& system_;
   const Tableau<T, s>& tableau_;
+  const StageMatrix<T, s>* extrapolation_ = &tableau_.extrapolation;
   alignas(64) Stages stages_;
   alignas(64) Stages increments_;
   alignas(64) StageRows<T, System::kAlgebraic, s, kMaxStages> algebraic_;

@@ -49,6 +49,11 @@ struct Tableau {
   // Row i, column j: weight of L_j of the last step in the first guess of L_i of the next one of
   // the same length, by extrapolation of the collocation polynomial. Full coupling only.
   alignas(64) StageMatrix<T, s> extrapolation;
+  // The same by the first four Legendre coefficients of that polynomial alone, for long steps:
+  // beyond the step the others grow too much.
+  alignas(64) StageMatrix<T, s> cautious;
+  // Row k, column j: weight of L_j in Legendre coefficient k. Collocation methods only.
+  alignas(64) StageMatrix<T, s> legendre;
 
   [[nodiscard]] int stages() const { return static_cast<int>(c.size()); }
   [[nodiscard]] T momentum_mu(int i, int j) const { return partitioned ? mu_p(i, j) : mu(i, j); }
@@ -110,6 +115,8 @@ Tableau<T, s> fixed_stages(const Tableau<T, kAnyStages>& of) {
   tableau.mu = of.mu;
   tableau.mu_p = of.partitioned ? of.mu_p : of.mu;
   tableau.extrapolation = of.extrapolation;
+  tableau.cautious = of.cautious;
+  tableau.legendre = of.legendre;
   return tableau;
 }
 

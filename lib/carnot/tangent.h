@@ -29,22 +29,19 @@ class Tangent {
   // singular or its solution not finite; M is then unchanged.
   [[nodiscard]] bool advance(const Step& step, Compensated<Square>& m) {
     const T h = step.last_step();
-    count_ = step.tableau().stages();
-    for (int i = 0; i < count_; ++i) {
-      const RateStatus status = phase_jacobian(step.system(),
-                                               step.stage_time(i),
-                                               Vector<T, kSize>(step.stages().col(i)),
-                                               step.algebraic(i),
-                                               jacobian_[i]);
-      if (status != RateStatus::kOk) return false;
-      jacobian_[i] *= h * step.tableau().omega[i];
-    }
-    const bool coupled = step.tableau().coupling == Coupling::kFull;
-    const bool solved = coupled ? iterate(step, m) || solve(step, m) : solve_in_turn(step, m);
+    const bool repeated = last_step_ == h;
     last_step_ = T(0);
-    if (!solved) return false;
-    Square sum = step.tableau().update[0] * increment_[0];
-    for (int i = 1; i < count_; ++i) sum += step.tableau().update[i] * increment_[i];
+    count_ = step.tableau().stages();
+    Square sum;
+    if (!in_packs(step, repeated, m, sum)) {
+      if (!linearize(step)) return false;
+      const bool coupled = step.tableau().coupling == Coupling::kFull;
+      if (!(coupled ? iterate(step, repeated, m) || solve(step, m) : solve_in_turn(step, m))) {
+        return false;
+      }
+      sum = step.tableau().update[0] * increment_[0];
+      for (int i = 1; i < count_; ++i) sum += step.tableau().update[i] * increment_[i];
+    }
     if (!sum.allFinite()) return false;
     last_step_ = h;
     m.add(sum);
@@ -53,6 +50,73 @@ class Tangent {
 
  private:
   static constexpr int kMaxIterations = 60;
+
+  // A_i of all stages.
+  bool linearize(const Step& step) {
+    for (int i = 0; i < count_; ++i) {
+      const RateStatus status = phase_jacobian(step.system(),
+                                               step.stage_time(i),
+                                               Vector<T, kSize>(step.stages().col(i)),
+                                               step.algebraic(i),
+                                               jacobian_[i]);
+      if (status != RateStatus::kOk) return false;
+      jacobian_[i] *= step.last_step() * step.tableau().omega[i];
+    }
+    return true;
+  }
+
+  // All stages side by side. False where that is not possible or does not settle.
+  bool in_packs(const Step& step, bool repeated, const Compensated<Square>& m, Square& sum) {
+    if constexpr (!Step::kRows) {
+      return false;
+    } else {
+      constexpr int s = Step::kLanes;
+      const T h = step.last_step();
+      alignas(64) std::array<T, s> time;
+      alignas(64) std::array<T, s> weights;
+      for (int l = 0; l < s; ++l) {
+        time[l] = step.stage_time(l);
+        weights[l] = h * step.tableau().omega[l];
+      }
+      if (!packed_jacobian<s>(
+              step.system(), time.data(), step.stages().data(), weights.data(), rows_.data())) {
+        return false;
+      }
+      const auto& tableau = step.tableau();
+      if (repeated) {
+        packed_extrapolation<kSize * kSize, s>(tableau.extrapolation.data(), tangents_.data());
+      } else {
+        tangents_.fill(T(0));
+      }
+      const auto sweep = [&] {
+        return packed_tangent_sweep<kSize, s>(tableau.mu.data(),
+                                              rows_.data(),
+                                              m.value.data(),
+                                              m.compensation.data(),
+                                              tangents_.data());
+      };
+      if (!settles(m, sweep)) return false;
+      using Rows = Eigen::Matrix<T, kSize * kSize, s, Eigen::RowMajor>;
+      const Vector<T, kSize* kSize> total =
+          Eigen::Map<const Rows>(tangents_.data()).rowwise().sum();
+      sum = Eigen::Map<const Square>(total.data());
+      return true;
+    }
+  }
+
+  // Repeats sweep(), which returns the largest change, until that is round-off.
+  template <class Sweep>
+  bool settles(const Compensated<Square>& m, const Sweep& sweep) {
+    const T resolution = std::numeric_limits<T>::epsilon() * m.value.cwiseAbs().maxCoeff();
+    T smallest = std::numeric_limits<T>::max();
+    for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+      const T change = sweep();
+      if (change <= T(0.25) * resolution) return true;
+      if (!(change < smallest)) break;
+      smallest = change;
+    }
+    return smallest <= T(8) * resolution;
+  }
 
   // sum += mu_ij dL_j.
   static void add_stage(const Step& step, int i, int j, const Square& increment, Square& sum) {
@@ -66,8 +130,8 @@ class Tangent {
   }
 
   // First guess, as for the stages: extrapolated from the last step, or A_i dz.
-  void predict(const Step& step, const Compensated<Square>& m) {
-    if (last_step_ == T(0) || last_step_ != step.last_step()) {
+  void predict(const Step& step, bool repeated, const Compensated<Square>& m) {
+    if (!repeated) {
       for (int i = 0; i < count_; ++i) increment_[i] = jacobian_[i].lazyProduct(m.value);
       return;
     }
@@ -80,12 +144,9 @@ class Tangent {
     }
   }
 
-  bool iterate(const Step& step, const Compensated<Square>& m) {
-    const T scale = m.value.cwiseAbs().maxCoeff();
-    const T resolution = std::numeric_limits<T>::epsilon() * scale;
-    predict(step, m);
-    T smallest = std::numeric_limits<T>::max();
-    for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+  bool iterate(const Step& step, bool repeated, const Compensated<Square>& m) {
+    predict(step, repeated, m);
+    return settles(m, [&] {
       T change(0);
       std::swap(increment_, last_);
       for (int i = 0; i < count_; ++i) {
@@ -95,11 +156,8 @@ class Tangent {
         increment_[i] = jacobian_[i].lazyProduct(argument);
         change = std::max(change, (increment_[i] - last_[i]).cwiseAbs().maxCoeff());
       }
-      if (change <= T(0.25) * resolution) return true;
-      if (!(change < smallest)) return smallest <= T(8) * resolution;
-      smallest = change;
-    }
-    return smallest <= T(8) * resolution;
+      return change;
+    });
   }
 
   // (I - A_i mu_ij) dL = A_i dz, all stages at once.
@@ -163,6 +221,11 @@ class Tangent {
   // Scratch of the linear solves.
   std::array<T, kSize * Step::kMaxCoupled * kSize * Step::kMaxCoupled> matrix_;
   std::array<T, kSize * Step::kMaxCoupled * kSize> rhs_;
+
+  // Of the stages side by side: entry k of all in row k.
+  static constexpr int kRowSize = Step::kRows ? kSize * kSize * Step::kLanes : 0;
+  alignas(64) std::array<T, kRowSize> rows_;
+  alignas(64) std::array<T, kRowSize> tangents_;
 
   std::array<Square, Step::kMaxStages> jacobian_;
   std::array<Square, Step::kMaxStages> increment_;

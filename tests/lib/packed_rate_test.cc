@@ -76,6 +76,39 @@ TYPED_TEST(PackedRateTest, AgreesWithTheRateLaneByLane) {
   }
 }
 
+// A_i of the tangent: the same Jets, on packs.
+TYPED_TEST(PackedRateTest, JacobianAgreesLaneByLane) {
+  constexpr int kLanes = 8;
+  constexpr int n = TypeParam::kDof;
+  const VelocityConstraints<TypeParam> system(test::uneven<TypeParam>());
+  using Square = Matrix<double, 2 * n, 2 * n>;
+  Generator generator(7);
+  std::array<double, kLanes> t{};
+  std::array<double, 2 * n * kLanes> z;
+  std::array<double, kLanes> weights;
+  std::array<double, 4 * n * n * kLanes> jacobian;
+  for (double& x : z) x = random_vector<1>(generator, 1)[0];
+  for (int l = 0; l < kLanes; ++l) weights[l] = 1 + l;
+  ASSERT_TRUE(packed_jacobian<kLanes>(system, t.data(), z.data(), weights.data(), jacobian.data()));
+  for (int l = 0; l < kLanes; ++l) {
+    Vector<double, 2 * n> point;
+    for (int k = 0; k < 2 * n; ++k) point[k] = z[k * kLanes + l];
+    Vector<double, system.kAlgebraic> y = Vector<double, system.kAlgebraic>::Zero();
+    Vector<double, 2 * n> rate;
+    Square expected;
+    ASSERT_EQ(phase_rate(system, 0.0, point, y, rate), RateStatus::kOk);
+    ASSERT_EQ(phase_jacobian(system, 0.0, point, y, expected), RateStatus::kOk);
+    Square packed;
+    for (int r = 0; r < 2 * n; ++r) {
+      for (int c = 0; c < 2 * n; ++c) packed(r, c) = jacobian[(2 * n * r + c) * kLanes + l];
+    }
+    EXPECT_LE(test::relative_distance(packed, Square(weights[l] * expected)), kRoundOff);
+  }
+  z[1] = std::nan("");
+  EXPECT_FALSE(
+      packed_jacobian<kLanes>(system, t.data(), z.data(), weights.data(), jacobian.data()));
+}
+
 // By multipliers and Jets, as a scene without hand-written parts goes.
 TEST(PackedRateOfMultipliers, AgreesWithTheRateLaneByLane) {
   using Plain = test::WithoutFrame<scenes::Vehicle>;

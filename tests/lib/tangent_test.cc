@@ -159,6 +159,36 @@ TEST_P(TangentTest, WarmStartDoesNotChangeIt) {
   }
 }
 
+// Side by side in packs, as where the compiler knows the number of stages, or one by one.
+TEST(TangentInPacks, AgreesWithThatOfOneStageAtATime) {
+  constexpr int kStages = 8;
+  using Small = Matrix<double, 8, 8>;
+  const auto tableau = test::tableau_of<double>("gauss16");
+  const auto fixed_tableau = fixed_stages<kStages>(tableau);
+  Generator generator(5);
+  for (const double h : {0.05, 0.2, 0.4}) {
+    const auto start = test::random_state<4>(generator);
+    RungeKutta<System> plain(cosine(), tableau);
+    RungeKutta<System, kStages> packed(cosine(), fixed_tableau);
+    Tangent<RungeKutta<System>> plain_tangent;
+    Tangent<RungeKutta<System, kStages>> packed_tangent;
+    Compensated<Small> a{Small::Identity(), Small::Zero()};
+    Compensated<Small> b = a;
+    auto za = start;
+    auto zb = start;
+    for (int i = 0; i < 6; ++i) {
+      ASSERT_EQ(plain.step(i * h, h, za).status, StepStatus::kOk);
+      ASSERT_EQ(packed.step(i * h, h, zb).status, StepStatus::kOk);
+      ASSERT_TRUE(plain_tangent.advance(plain, a));
+      ASSERT_TRUE(packed_tangent.advance(packed, b));
+    }
+    // The round-off of the two points is amplified by M, and once more by its derivative.
+    const double size = std::max(1.0, a.value.cwiseAbs().maxCoeff());
+    EXPECT_LE((a.value - b.value).cwiseAbs().maxCoeff(), 200 * kEps * size * size) << "h = " << h;
+    EXPECT_LE(symplecticity_defect(b.value), 200 * kEps * size * size) << "h = " << h;
+  }
+}
+
 // A rate whose derivative is not a number, although its value is finite.
 struct Kinked : Oscillator {
   template <class U>
