@@ -15,7 +15,7 @@
 #include "testing/method_runs.h"
 #include "testing/order.h"
 
-namespace carnot {
+namespace carnot::audit_methods_test {
 namespace {
 
 using Pendulum = LagrangianSystem<scenes::DrivenPendulum>;
@@ -115,4 +115,4 @@ TEST_P(AuditOfMethodTest, LengthAndActionOfAFreeMotion) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::audit_methods_test

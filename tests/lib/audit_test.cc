@@ -9,7 +9,7 @@
 #include "carnot/gauss.h"
 #include "testing/runs.h"
 
-namespace carnot {
+namespace carnot::audit_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -140,4 +140,4 @@ TEST(AuditDriftTest, SeesTheEnergyErrorOfACoarseRun) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::audit_test

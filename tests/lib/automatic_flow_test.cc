@@ -10,7 +10,7 @@
 #include "carnot/make_segment.h"
 #include "testing/runs.h"
 
-namespace carnot {
+namespace carnot::automatic_flow_test {
 namespace {
 
 using test::Generator;
@@ -111,4 +111,4 @@ TEST(AutomaticFlow, OfARestIsARest) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::automatic_flow_test

@@ -11,7 +11,7 @@
 #include "testing/order.h"
 #include "testing/runs.h"
 
-namespace carnot {
+namespace carnot::batch_test {
 namespace {
 
 using test::Generator;
@@ -121,4 +121,4 @@ TEST(Batch, OneFailureStaysOne) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::batch_test

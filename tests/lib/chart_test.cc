@@ -10,7 +10,7 @@
 #include "carnot/scenes/satellite.h"
 #include "carnot/scenes/vehicle.h"
 
-namespace carnot {
+namespace carnot::chart_test {
 namespace {
 
 static_assert(HasChart<scenes::Satellite> && !HasChart<scenes::Vehicle>);
@@ -45,4 +45,4 @@ TEST(ChartTest, RegularWithoutAChart) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::chart_test

@@ -11,7 +11,7 @@
 #include "carnot/gradient.h"
 #include "testing/random_points.h"
 
-namespace carnot {
+namespace carnot::cholesky_test {
 namespace {
 
 using test::Generator;
@@ -229,4 +229,4 @@ TEST(CholeskyAccepts, AnyScale) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::cholesky_test

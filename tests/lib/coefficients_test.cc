@@ -6,7 +6,7 @@
 #include <limits>
 #include <type_traits>
 
-namespace carnot {
+namespace carnot::coefficients_test {
 namespace {
 
 constexpr long double kWideEps = std::numeric_limits<long double>::epsilon();
@@ -33,4 +33,4 @@ TEST(DecimalTest, ReadsToRoundOff) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::coefficients_test

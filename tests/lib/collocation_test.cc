@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace carnot {
+namespace carnot::collocation_test {
 namespace {
 
 constexpr long double kWideEps = std::numeric_limits<long double>::epsilon();
@@ -55,4 +55,4 @@ TEST(NewtonRootTest, SquareRootOfTwo) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::collocation_test

@@ -10,7 +10,7 @@
 #include "carnot/linear_algebra.h"
 #include "testing/random_points.h"
 
-namespace carnot {
+namespace carnot::compensated_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -79,4 +79,4 @@ TEST(CompensatedTest, ForthAndBackOnVectors) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::compensated_test

@@ -8,7 +8,7 @@
 
 #include "testing/rooted_trees.h"
 
-namespace carnot {
+namespace carnot::composition_tableau_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -124,4 +124,4 @@ TEST(CompositionClosedForm, OrderFourIsSuzukis) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::composition_tableau_test

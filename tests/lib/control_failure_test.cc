@@ -9,7 +9,7 @@
 #include "testing/control_scene_list.h"
 #include "testing/random_points.h"
 
-namespace carnot {
+namespace carnot::control_failure_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -165,4 +165,4 @@ TYPED_TEST(ControlNotFiniteTest, IsReportedOrDoesNotEnter) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::control_failure_test

@@ -19,7 +19,7 @@
 #include "testing/order.h"
 #include "testing/random_points.h"
 
-namespace carnot {
+namespace carnot::control_flow_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -243,4 +243,4 @@ TEST_P(BoatFlowTest, FollowsItsClosedFormOnItsBranch) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::control_flow_test

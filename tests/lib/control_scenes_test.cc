@@ -11,7 +11,7 @@
 #include "testing/control_scene_list.h"
 #include "testing/random_points.h"
 
-namespace carnot {
+namespace carnot::control_scenes_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -209,4 +209,4 @@ TEST_F(BoatTest, BranchesAreThoseOfTheHeader) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::control_scenes_test

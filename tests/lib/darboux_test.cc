@@ -10,7 +10,7 @@
 
 #include "testing/random_points.h"
 
-namespace carnot {
+namespace carnot::darboux_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -239,4 +239,4 @@ TEST(DarbouxTest, ChecksACoordinateSystemWrittenByHand) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::darboux_test

@@ -9,7 +9,7 @@
 #include "testing/order_conditions.h"
 #include "testing/rooted_trees.h"
 
-namespace carnot {
+namespace carnot::dop853_tableau_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -112,4 +112,4 @@ TEST(RootedTreesTest, CountSymmetriesInTheErrorConstant) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::dop853_tableau_test

@@ -12,7 +12,7 @@
 #include "testing/failing_scenes.h"
 #include "testing/runs.h"
 
-namespace carnot {
+namespace carnot::flow_test {
 namespace {
 
 using Vehicle = VelocityConstraints<scenes::Vehicle>;
@@ -235,4 +235,4 @@ TEST_F(FlowTest, TangentsCompose) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::flow_test

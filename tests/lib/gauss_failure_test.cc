@@ -9,7 +9,7 @@
 #include "testing/failing_scenes.h"
 #include "testing/runs.h"
 
-namespace carnot {
+namespace carnot::gauss_failure_test {
 namespace {
 
 using test::CountingSystem;
@@ -97,4 +97,4 @@ TEST(GaussFailureTest, StepperRecovers) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::gauss_failure_test

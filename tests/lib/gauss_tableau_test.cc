@@ -10,7 +10,7 @@
 #include "testing/order_conditions.h"
 #include "testing/rooted_trees.h"
 
-namespace carnot {
+namespace carnot::gauss_tableau_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -203,4 +203,4 @@ TEST(FixedStagesTest, HoldTheSameNumbers) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::gauss_tableau_test

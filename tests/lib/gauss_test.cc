@@ -8,7 +8,7 @@
 #include "testing/counting_system.h"
 #include "testing/runs.h"
 
-namespace carnot {
+namespace carnot::gauss_test {
 namespace {
 
 using test::CountingSystem;
@@ -156,4 +156,4 @@ TEST(GaussTest, NoStepIsSilentlyWrongOneStage) { expect_honest_steps<1>(); }
 TEST(GaussTest, NoStepIsSilentlyWrongFourStages) { expect_honest_steps<4>(); }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::gauss_test

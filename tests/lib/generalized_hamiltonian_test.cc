@@ -13,7 +13,7 @@
 #include "testing/generalized_scenes.h"
 #include "testing/runs.h"
 
-namespace carnot {
+namespace carnot::generalized_hamiltonian_test {
 namespace {
 
 using CanonicalVehicle = test::AsGeneralized<scenes::Vehicle>;
@@ -229,4 +229,4 @@ TEST(GeneralizedHamiltonianTest, RegularStructure) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::generalized_hamiltonian_test

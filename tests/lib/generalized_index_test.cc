@@ -13,7 +13,7 @@
 #include "testing/generalized_scenes.h"
 #include "testing/order.h"
 
-namespace carnot {
+namespace carnot::generalized_index_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -266,4 +266,4 @@ TEST(GeneralizedIndexTest, VelocityWithoutAMomentum) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::generalized_index_test

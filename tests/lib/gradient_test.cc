@@ -7,7 +7,7 @@
 
 #include "testing/random_points.h"
 
-namespace carnot {
+namespace carnot::gradient_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -104,4 +104,4 @@ TEST(ScalarTest, ConstantsHaveNoDerivativeAtAnyDepth) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::gradient_test

@@ -11,7 +11,7 @@
 #include "testing/reduced_scenes.h"
 #include "testing/scene_wrappers.h"
 
-namespace carnot {
+namespace carnot::holonomic_scene_models_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -167,4 +167,4 @@ TEST(QuaternionTest, RatesAreThoseOfProducts) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::holonomic_scene_models_test

@@ -7,7 +7,7 @@
 
 #include "testing/holonomic_laws.h"
 
-namespace carnot {
+namespace carnot::holonomic_scenes_test {
 namespace {
 
 template <class Runs>
@@ -105,4 +105,4 @@ TEST(SatelliteQuaternionTest, PassesTheSingularityOfTheAngles) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::holonomic_scenes_test

@@ -11,7 +11,7 @@
 #include "carnot/velocity_constraints.h"
 #include "testing/random_points.h"
 
-namespace carnot {
+namespace carnot::holonomic_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -143,4 +143,4 @@ TEST(HolonomicTest, ManifoldProjector) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::holonomic_test

@@ -12,7 +12,7 @@
 #include "carnot/tangent_flow.h"
 #include "testing/order.h"
 
-namespace carnot {
+namespace carnot::lagrangian_branch_test {
 namespace {
 
 constexpr double kEps = epsilon<double>();
@@ -252,4 +252,4 @@ TEST(LagrangianBranchTest, TangentIsSymplecticAndThatOfTheFlow) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::lagrangian_branch_test

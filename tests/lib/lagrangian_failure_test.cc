@@ -8,7 +8,7 @@
 #include "carnot/scenes/appell.h"
 #include "testing/random_points.h"
 
-namespace carnot {
+namespace carnot::lagrangian_failure_test {
 namespace {
 
 constexpr double kEps = epsilon<double>();
@@ -152,4 +152,4 @@ TEST(LagrangianFailureTest, ProjectionThatFails) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::lagrangian_failure_test

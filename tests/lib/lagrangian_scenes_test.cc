@@ -13,7 +13,7 @@
 #include "carnot/scenes/relativistic_particle.h"
 #include "testing/random_points.h"
 
-namespace carnot {
+namespace carnot::lagrangian_scenes_test {
 namespace {
 
 constexpr double kEps = epsilon<double>();
@@ -262,4 +262,4 @@ TYPED_TEST(LagrangianSceneInfoTest, ParametersHaveDefaultsInTheirRanges) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::lagrangian_scenes_test

@@ -18,7 +18,7 @@
 #include "testing/random_points.h"
 #include "testing/scene_wrappers.h"
 
-namespace carnot {
+namespace carnot::lagrangian_system_test {
 namespace {
 
 constexpr double kEps = epsilon<double>();
@@ -190,4 +190,4 @@ TEST(LagrangianHeisenbergGroupTest, LagrangianNeedNotContainEveryVelocity) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::lagrangian_system_test

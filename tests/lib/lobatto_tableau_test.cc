@@ -10,7 +10,7 @@
 #include "testing/order_conditions.h"
 #include "testing/rooted_trees.h"
 
-namespace carnot {
+namespace carnot::lobatto_tableau_test {
 namespace {
 
 using test::Part;
@@ -180,4 +180,4 @@ TEST(LobattoTableauClosedForm, FourStages) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::lobatto_tableau_test

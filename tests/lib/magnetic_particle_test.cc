@@ -14,7 +14,7 @@
 #include "testing/order.h"
 #include "testing/runs.h"
 
-namespace carnot {
+namespace carnot::magnetic_particle_test {
 namespace {
 
 using scenes::MagneticParticle;
@@ -255,4 +255,4 @@ TEST(MagneticParticleTest, ParametersAreChecked) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::magnetic_particle_test

@@ -15,7 +15,7 @@
 #include "testing/order_conditions.h"
 #include "testing/rooted_trees.h"
 
-namespace carnot {
+namespace carnot::methods_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -184,4 +184,4 @@ TEST_P(MethodTest, RoundsTheTableInQuad) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::methods_test

@@ -11,7 +11,7 @@
 #include "carnot/make_segment.h"
 #include "testing/runs.h"
 
-namespace carnot {
+namespace carnot::midpoint_transcription_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -185,4 +185,4 @@ TYPED_TEST(MidpointTest, MidpointRuleIsTheDiscreteLegendreTransform) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::midpoint_transcription_test

@@ -10,7 +10,7 @@
 #include "testing/control_scene_list.h"
 #include "testing/random_points.h"
 
-namespace carnot {
+namespace carnot::optimal_control_test {
 namespace {
 
 using test::Generator;
@@ -251,4 +251,4 @@ TEST(OptimalControlTest, FrameMayLoseRank) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::optimal_control_test

@@ -13,7 +13,7 @@
 #include "carnot/gradient.h"
 #include "carnot/stumpff.h"
 
-namespace carnot {
+namespace carnot::pack_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -196,4 +196,4 @@ TYPED_TEST(PackTest, CarriesDerivatives) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::pack_test

@@ -11,7 +11,7 @@
 #include "testing/runs.h"
 #include "testing/scene_wrappers.h"
 
-namespace carnot {
+namespace carnot::packed_rate_test {
 namespace {
 
 using test::Generator;
@@ -153,4 +153,4 @@ TEST(PackedRateFailure, FarAnglesAreLeftToPlainRates) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::packed_rate_test

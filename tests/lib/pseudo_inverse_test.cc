@@ -7,7 +7,7 @@
 
 #include "testing/random_points.h"
 
-namespace carnot {
+namespace carnot::pseudo_inverse_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -110,4 +110,4 @@ TEST(PseudoInverseTest, LongDouble) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::pseudo_inverse_test

@@ -10,7 +10,7 @@
 #include "testing/order_conditions.h"
 #include "testing/rooted_trees.h"
 
-namespace carnot {
+namespace carnot::radau_tableau_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -120,4 +120,4 @@ TEST(RadauTableauClosedForm, ThreeStages) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::radau_tableau_test

@@ -11,7 +11,7 @@
 #include "testing/scene_list.h"
 #include "testing/scene_wrappers.h"
 
-namespace carnot {
+namespace carnot::rate_status_test {
 namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
@@ -147,4 +147,4 @@ TEST(RateStatusTest, EveryFailureHasItsOwnSentence) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::rate_status_test

@@ -11,7 +11,7 @@
 #include "carnot/velocity_constraints.h"
 #include "testing/counting_system.h"
 
-namespace carnot {
+namespace carnot::rattle_failure_test {
 namespace {
 
 using Pendulum = test::CountingSystem<VelocityConstraints<scenes::SphericalPendulum>>;
@@ -152,4 +152,4 @@ TEST(RattleFailureTest, FlowReportsTheReason) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::rattle_failure_test

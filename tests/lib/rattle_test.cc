@@ -8,7 +8,7 @@
 #include "testing/holonomic_laws.h"
 #include "testing/reference.h"
 
-namespace carnot {
+namespace carnot::rattle_test {
 namespace {
 
 using RodSkateRuns = test::HolonomicRuns<test::RodSkatePair>;
@@ -170,4 +170,4 @@ TEST(RodSkateReferenceTest, AllTimes) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::rattle_test

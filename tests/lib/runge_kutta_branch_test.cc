@@ -10,7 +10,7 @@
 #include "testing/counting_system.h"
 #include "testing/method_runs.h"
 
-namespace carnot {
+namespace carnot::runge_kutta_branch_test {
 namespace {
 
 using Appell = LagrangianSystem<scenes::Appell>;
@@ -115,4 +115,4 @@ TEST_P(RungeKuttaBranchTest, FailureLeavesStateAndBranchAsTheyWere) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::runge_kutta_branch_test

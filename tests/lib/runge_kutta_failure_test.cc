@@ -9,7 +9,7 @@
 #include "testing/method_runs.h"
 #include "testing/oscillator.h"
 
-namespace carnot {
+namespace carnot::runge_kutta_failure_test {
 namespace {
 
 using test::expect_refused;
@@ -64,4 +64,4 @@ TEST_P(RungeKuttaFailureTest, NotANumberInAnyComponent) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::runge_kutta_failure_test

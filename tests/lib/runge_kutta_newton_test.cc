@@ -9,7 +9,7 @@
 #include "testing/method_runs.h"
 #include "testing/oscillator.h"
 
-namespace carnot {
+namespace carnot::runge_kutta_newton_test {
 namespace {
 
 using test::CountingSystem;
@@ -113,4 +113,4 @@ TEST_P(RungeKuttaNewtonTest, StiffOscillator) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::runge_kutta_newton_test

@@ -11,7 +11,7 @@
 #include "testing/method_runs.h"
 #include "testing/order.h"
 
-namespace carnot {
+namespace carnot::runge_kutta_order_test {
 namespace {
 
 // Order 8 needs the room below double.
@@ -77,4 +77,4 @@ TEST_P(OrderOfMethodTest, SlopeOfTheError) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::runge_kutta_order_test

@@ -12,7 +12,7 @@
 #include "testing/method_runs.h"
 #include "testing/oscillator.h"
 
-namespace carnot {
+namespace carnot::runge_kutta_test {
 namespace {
 
 using test::Generator;
@@ -203,4 +203,4 @@ TEST(CouplingTest, CompositionIsThatOfMidpointSteps) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::runge_kutta_test

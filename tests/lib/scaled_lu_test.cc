@@ -8,7 +8,7 @@
 #include "carnot/gradient.h"
 #include "testing/random_points.h"
 
-namespace carnot {
+namespace carnot::scaled_lu_test {
 namespace {
 
 constexpr double kEps = epsilon<double>();
@@ -106,4 +106,4 @@ TEST(ScaledLuTest, JetsPartByPart) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::scaled_lu_test

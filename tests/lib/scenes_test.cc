@@ -12,7 +12,7 @@
 #include "testing/reference.h"
 #include "testing/runs.h"
 
-namespace carnot {
+namespace carnot::scenes_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -234,4 +234,4 @@ TEST(HeisenbergGroupTest, SharedReference) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::scenes_test

@@ -11,7 +11,7 @@
 #include "carnot/make_segment.h"
 #include "testing/runs.h"
 
-namespace carnot {
+namespace carnot::segment_test {
 namespace {
 
 using System = VelocityConstraints<scenes::VehicleCosine>;
@@ -174,4 +174,4 @@ TEST(ValidateTest, ASegmentOfABadSceneIsRefused) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::segment_test

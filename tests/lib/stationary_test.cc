@@ -9,7 +9,7 @@
 
 #include "testing/random_points.h"
 
-namespace carnot {
+namespace carnot::stationary_test {
 namespace {
 
 constexpr double kEps = epsilon<double>();
@@ -342,4 +342,4 @@ TEST(StationaryTest, JetsAgreeWithDifferences) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::stationary_test

@@ -8,7 +8,7 @@
 
 #include "carnot/gradient.h"
 
-namespace carnot {
+namespace carnot::stumpff_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -142,4 +142,4 @@ TEST(StumpffTest, NotANumberStaysNotANumber) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::stumpff_test

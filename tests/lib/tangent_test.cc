@@ -12,7 +12,7 @@
 #include "testing/method_runs.h"
 #include "testing/oscillator.h"
 
-namespace carnot {
+namespace carnot::tangent_test {
 namespace {
 
 using test::Generator;
@@ -216,4 +216,4 @@ TEST_P(TangentTest, RefusesWhatIsNotANumber) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::tangent_test

@@ -8,7 +8,7 @@
 #include "carnot/gauss.h"
 #include "testing/runs.h"
 
-namespace carnot {
+namespace carnot::trajectory_test {
 namespace {
 
 using System = VelocityConstraints<scenes::VehicleCosine>;
@@ -139,4 +139,4 @@ TEST_F(TrajectoryTest, RowsAreConsistent) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::trajectory_test

@@ -10,7 +10,7 @@
 #include "testing/scene_list.h"
 #include "testing/scene_wrappers.h"
 
-namespace carnot {
+namespace carnot::velocity_constraints_test {
 namespace {
 
 using test::Generator;
@@ -248,4 +248,4 @@ TYPED_TEST(VelocityConstraintsTest, RateInvertsMomentum) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::velocity_constraints_test

@@ -8,7 +8,7 @@
 #include "testing/attitude.h"
 #include "testing/more_scenes.h"
 
-namespace carnot {
+namespace carnot::velocity_scene_models_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -234,4 +234,4 @@ TEST(EngelTest, FrameHasTheBracketsOfTheEngelAlgebra) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::velocity_scene_models_test

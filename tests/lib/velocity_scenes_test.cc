@@ -12,7 +12,7 @@
 #include "testing/more_scenes.h"
 #include "testing/scene_wrappers.h"
 
-namespace carnot {
+namespace carnot::velocity_scenes_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -273,4 +273,4 @@ TEST(VelocitySceneParametersTest, AreCheckedAgainstTheirRange) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::velocity_scenes_test
