@@ -8,6 +8,7 @@
 //              derivatives by the library
 // step/...     one step of a method
 // peer/...     one accepted step of DOP853 with step control
+// warm/...     geodesics from one nearby (warm_start_micro.h)
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -25,6 +26,7 @@
 #include "carnot/scenes/vehicle_cosine.h"
 #include "carnot/system_of.h"
 #include "scene_choice.h"
+#include "warm_start_micro.h"
 
 namespace carnot::apps {
 namespace {
@@ -167,6 +169,7 @@ int main(int argc, char** argv) {
   carnot::apps::add_scene<carnot::scenes::Vehicle, carnot::apps::VehicleRate>(trajectories[1]);
   carnot::apps::add_scene<carnot::scenes::Heisenberg, carnot::apps::HeisenbergRate>(
       trajectories[2]);
+  carnot::apps::add_warm_starts();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   benchmark::RunSpecifiedBenchmarks();
