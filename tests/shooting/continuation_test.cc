@@ -64,7 +64,9 @@ TEST(Continuation, PassesTheFoldOfTheHeisenbergGroup) {
     const bool changed =
         geodesic.morse_index.value() != report.points[i - 1].geodesic.morse_index.value();
     changes += changed ? 1 : 0;
-    if (changed) EXPECT_GE(geodesic.p0[2], 2 * kFold);
+    if (changed) {
+      EXPECT_GE(geodesic.p0[2], 2 * kFold);
+    }
   }
   EXPECT_EQ(changes, 1);
   EXPECT_GT(report.points.back().geodesic.p0[2], 2 * kFold);
@@ -144,8 +146,11 @@ TEST(Continuation, FollowsBothArmsOfAPitchfork) {
     const double p0 = point.geodesic.p0[0];
     const double time = 2 + 3 * point.s;
     EXPECT_EQ(point.geodesic.morse_index, point.branch == 0 && time > kPi ? 1 : 0);
-    if (point.branch == 0) EXPECT_EQ(p0, 0);
-    if (point.branch > 0) EXPECT_NEAR(2 * std::comp_ellint_1(0.5 * p0), time, kMagnified);
+    if (point.branch == 0) {
+      EXPECT_EQ(p0, 0);
+    } else {
+      EXPECT_NEAR(2 * std::comp_ellint_1(0.5 * p0), time, kMagnified);
+    }
     if (point.branch > 0 && point.s == 1) product *= p0;
   }
   EXPECT_LT(product, 0);
