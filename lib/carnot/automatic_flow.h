@@ -35,25 +35,31 @@ struct AutomaticFlow {
   long evaluations = 0;  // of all runs and the trial
 };
 
-// Estimated error of the step just done, from the decay of its Legendre coefficients.
+// Enough Legendre coefficients to see them fall.
+inline constexpr int kLeastSampled = 4;
+
+// Estimated error of the step just done, from the decay of its Legendre coefficients. At least
+// kLeastSampled stages.
 template <class Stepper>
 typename Stepper::Scalar step_error(const Stepper& step) {
   using T = typename Stepper::Scalar;
-  constexpr int s = Stepper::kMaxStages;
-  static_assert(s >= 3 && Stepper::Stages::ColsAtCompileTime == s);
-  constexpr int kLow = std::max(0, s - 6);
-  constexpr T kHigh = T(s) - T(1.5);
-  constexpr T kExponent = (T(2 * s) - kHigh) / (kHigh - T(kLow) - T(0.5));
-  const auto& legendre = step.tableau().legendre;
-  Vector<T, s> size;
+  constexpr int kStages = Stepper::Stages::ColsAtCompileTime;
+  const auto& tableau = step.tableau();
+  const int s = tableau.stages();
+  StageVector<T, kStages> size(s);
   if constexpr (Stepper::kRows) {
-    packed_sizes<Stepper::kSize, s>(legendre.data(), step.increments().data(), size.data());
+    packed_sizes<Stepper::kSize, kStages>(
+        tableau.legendre.data(), step.increments().data(), size.data());
   } else {
-    size = (legendre * step.increments().transpose()).cwiseAbs().rowwise().maxCoeff();
+    size =
+        tableau.legendre.lazyProduct(step.increments().transpose()).cwiseAbs().rowwise().maxCoeff();
   }
-  const T low = std::max(size[kLow], size[kLow + 1]);
+  const int first = std::max(0, s - 6);
+  const T low = std::max(size[first], size[first + 1]);
   const T high = std::max(size[s - 2], size[s - 1]);
-  return low > T(0) ? high * std::pow(high / low, kExponent) : T(0);
+  const T at = T(s) - T(1.5);
+  const T exponent = (T(tableau.order) - at) / (at - T(first) - T(0.5));
+  return low > T(0) ? high * std::pow(high / low, exponent) : T(0);
 }
 
 namespace automatic {
@@ -71,10 +77,10 @@ inline constexpr double kFirst = 8;  // steps of the trial, at least
 inline constexpr double kMostSteps = 1 << 24;
 inline constexpr double kRoundOff = 50;  // tolerances below this times eps are out of reach
 inline constexpr int kRunIterations = 100;
-inline constexpr double kLongest = 0.85;  // steps of the run over those of the trial, at least
-inline constexpr double kFiner = 1.2;     // steps of a confirming run over the last, at least
-inline constexpr double kSafety = 1.1;    // on the steps that a difference asks for
-inline constexpr double kFailed = 100;    // growth of errors assumed where a run failed
+inline constexpr double kLongest = 1.0;  // steps of the run over those of the trial, at least
+inline constexpr double kFiner = 1.2;    // steps of a confirming run over the last, at least
+inline constexpr double kSafety = 1.1;   // on the steps that a difference asks for
+inline constexpr double kFailed = 100;   // growth of errors assumed where a run failed
 inline constexpr int kMostRuns = 5;
 
 // A stepper that begins where `fresh` does. (A copy would copy its scratch.)
@@ -181,6 +187,7 @@ AutomaticFlow automatic_flow(const Stepper& fresh,
   State<double, Stepper::kDof> end = z;
   if (!(count <= kMostSteps)) return result;
   bool ok = run(count, stop, end);
+  for (int i = 0; i < kMostRuns && !ok; ++i) ok = run(count *= kFiner, stop, end);
   result.error = tolerance;
   const double away = ok ? distance(end, trial.z) : INFINITY;
   if (!(away <= kExplained * trial.loose)) {

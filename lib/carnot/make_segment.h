@@ -317,7 +317,14 @@ Segment make_segment(const Scene& scene, std::string_view method_name = default_
       if constexpr (PacksRates<System>) segment.calls.adaptive_batch = adaptive_batch<B>;
       return segment;
     }
-    return bind(scene, *method, Bound<RungeKutta<System>>{std::move(system), tableau});
+    using B = Bound<RungeKutta<System>>;
+    Segment segment = bind(scene, *method, B{std::move(system), tableau});
+    const bool gauss = tableau.coupling == Coupling::kFull && !tableau.partitioned &&
+                       tableau.order == 2 * tableau.stages();
+    if (gauss && tableau.stages() >= kLeastSampled) {
+      segment.calls.automatic_flow = automatic_flow<B>;
+    }
+    return segment;
   }
 }
 

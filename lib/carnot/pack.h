@@ -143,14 +143,11 @@ template <class Lane>
     const Lane s = r + fma(fma(z4, s3, fma(z2, s1, s0)), z * r, rest * half);
     const Lane c = half + fma(z2, fma(z4, c2, fma(z2, c1, c0)), -(rest * r));
     const Integer quadrant = xsimd::bitwise_cast<Integer>(shifted);
-    const auto even = (quadrant & Integer(1)) == Integer(0);
+    const auto even = xsimd::bitwise_cast<Lane>(quadrant & Integer(1)) == Lane(0.0);
     const Integer sign(std::numeric_limits<std::int64_t>::min());
-    const Integer sine_bits = xsimd::bitwise_cast<Integer>(s);
-    const Integer cosine_bits = xsimd::bitwise_cast<Integer>(c);
-    const Integer sine = xsimd::select(even, sine_bits, cosine_bits) ^ ((quadrant << 62) & sign);
-    const Integer cosine =
-        xsimd::select(even, cosine_bits, sine_bits) ^ (((quadrant + Integer(1)) << 62) & sign);
-    return {xsimd::bitwise_cast<Lane>(sine), xsimd::bitwise_cast<Lane>(cosine)};
+    const Lane sine_sign = xsimd::bitwise_cast<Lane>((quadrant << 62) & sign);
+    const Lane cosine_sign = xsimd::bitwise_cast<Lane>(((quadrant + Integer(1)) << 62) & sign);
+    return {xsimd::select(even, s, c) ^ sine_sign, xsimd::select(even, c, s) ^ cosine_sign};
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -69,6 +70,30 @@ TYPED_TEST(AutomaticFlowTest, ReportsTheRunThatItMade) {
   Gauss<typename TestFixture::System, 8> step(this->system_);
   EXPECT_EQ(flow(step, run.plan, again).evaluations, run.report.evaluations);
   EXPECT_EQ(again.value, z.value);
+}
+
+// Every Gauss method whose polynomial has enough coefficients to see them fall, and no other.
+TEST(AutomaticFlow, ServesGaussMethodsOfOrderEightAndMore) {
+  constexpr double kBeyond = 50;
+  const std::array<double, 8> start = {1, 0.5, 0.3, 0.8, 0.7, 0.7, 0.5, 0.2};
+  auto expected = start;
+  const Segment exact = make_segment(scenes::VehicleCosine{});
+  ASSERT_TRUE(exact.flow(StepPlan::equal(0, 5, 200), expected.data()).completed());
+  for (const char* method : {"gauss8", "gauss10", "gauss12", "gauss14", "gauss20", "gauss24"}) {
+    const Segment segment = make_segment(scenes::VehicleCosine{}, method);
+    ASSERT_TRUE(segment.has_automatic_flow()) << method;
+    for (const double tolerance : {1e-5, 1e-9}) {
+      auto z = start;
+      const AutomaticFlow run = segment.automatic_flow(0, 5, tolerance, z.data());
+      EXPECT_TRUE(run.reached) << method;
+      EXPECT_LE((view<8>(z.data()) - view<8>(expected.data())).cwiseAbs().maxCoeff(),
+                kBeyond * tolerance)
+          << method;
+    }
+  }
+  for (const char* method : {"midpoint", "gauss4", "gauss6", "lobatto8", "radau9", "dop853"}) {
+    EXPECT_FALSE(make_segment(scenes::VehicleCosine{}, method).has_automatic_flow()) << method;
+  }
 }
 
 // Where errors grow by 500, a second run finds that out.

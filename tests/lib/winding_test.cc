@@ -10,7 +10,7 @@
 #include "carnot/make_segment.h"
 #include "carnot/scenes/vehicle.h"
 
-namespace carnot {
+namespace carnot::winding_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -92,4 +92,4 @@ TEST(Winding, KeepsTheEnergyOfATurningVehicle) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::winding_test
