@@ -9,51 +9,15 @@
 #include "carnot/gauss.h"
 #include "carnot/methods.h"
 #include "carnot/tangent_flow.h"
+#include "testing/allocation_counter.h"
 #include "testing/runs.h"
-
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define CARNOT_TEST_COUNTS_MALLOC 1
-
-namespace {
-thread_local long allocations = 0;
-}
-
-extern "C" {
-void* __libc_malloc(std::size_t size);
-void* __libc_calloc(std::size_t count, std::size_t size);
-void* __libc_realloc(void* old, std::size_t size);
-void* __libc_memalign(std::size_t alignment, std::size_t size);
-
-void* malloc(std::size_t size) noexcept {
-  ++allocations;
-  return __libc_malloc(size);
-}
-void* calloc(std::size_t count, std::size_t size) noexcept {
-  ++allocations;
-  return __libc_calloc(count, size);
-}
-void* realloc(void* old, std::size_t size) noexcept {
-  ++allocations;
-  return __libc_realloc(old, size);
-}
-void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
-  ++allocations;
-  return __libc_memalign(alignment, size);
-}
-}
-#endif
 
 namespace carnot {
 namespace {
 
 #ifdef CARNOT_TEST_COUNTS_MALLOC
 
-template <class F>
-long allocations_in(const F& f) {
-  const long before = allocations;
-  f();
-  return allocations - before;
-}
+using test::allocations_in;
 
 // Hides a pointer from the optimiser, which may else remove the allocation.
 void keep(const void* pointer) { asm volatile("" : : "g"(pointer) : "memory"); }

@@ -4,17 +4,22 @@
 #include <cmath>
 
 namespace carnot {
+
+void turn_plane(const Symmetries& of, double angle, double* x) {
+  if (of.x < 0) return;
+  const double u = x[of.x];
+  const double v = x[of.y];
+  x[of.x] = std::cos(angle) * u - std::sin(angle) * v;
+  x[of.y] = std::sin(angle) * u + std::cos(angle) * v;
+}
+
 namespace {
 
 // R D x, the linear part; x is a configuration without its angles' turn, or a momentum.
 std::vector<double> linear(const Symmetries& of, const ProblemSymmetry& s, const double* x) {
   std::vector<double> y(s.mirror.size());
   for (std::size_t j = 0; j < y.size(); ++j) y[j] = s.mirror[j] * x[j];
-  if (of.x < 0) return y;
-  const double u = y[of.x];
-  const double v = y[of.y];
-  y[of.x] = std::cos(s.turn) * u - std::sin(s.turn) * v;
-  y[of.y] = std::sin(s.turn) * u + std::cos(s.turn) * v;
+  turn_plane(of, s.turn, y.data());
   return y;
 }
 

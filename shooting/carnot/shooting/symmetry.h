@@ -21,6 +21,9 @@ struct ProblemSymmetry {
   bool reverses = false;
 };
 
+// Turns the coordinates x, y of the plane, where the scene has them; angles are not touched.
+void turn_plane(const Symmetries& of, double angle, double* x);
+
 std::vector<ProblemSymmetry> symmetries_of(const BoundaryValueProblem& problem);
 
 // The partner of the extremal through `knots`.

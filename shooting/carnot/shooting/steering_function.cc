@@ -1,0 +1,104 @@
+#include "carnot/shooting/steering_function.h"
+
+#include <stdexcept>
+#include <utility>
+
+#include "carnot/shooting/steering_memory.h"
+#include "carnot/shooting/steering_search.h"
+
+namespace carnot {
+
+// The search, and what it has found.
+class SteeringFunction::Implementation {
+ public:
+  Implementation(Segment segment, const SteeringOptions& options)
+      : search_(std::make_shared<const SteeringSearch>(std::move(segment), options)),
+        memory_(options.memory) {}
+
+  [[nodiscard]] const std::shared_ptr<const SteeringSearch>& search() const { return search_; }
+
+  // Known or solved, never null. Sets the question.
+  [[nodiscard]] SteeringMemory::Value answer(std::span<const double> from,
+                                             std::span<const double> to,
+                                             SteeringQuestion& question) const {
+    std::string refusal = search_->refusal(from, to);
+    if (!refusal.empty()) return refused(std::move(refusal));
+    question.ask(search_->segment().info, search_->rules(), from, to);
+    SteeringMemory::Value known = memory_.find(question.ends);
+    if (known != nullptr) return known;
+    SteeringMemory::Value found = search_->answers(question, 1).front();
+    memory_.insert(question.ends, found);
+    return found;
+  }
+
+  [[nodiscard]] static SteeringMemory::Value refused(std::string reason) {
+    auto answer = std::make_shared<SteeringAnswer>();
+    answer->reason = std::move(reason);
+    return answer;
+  }
+
+ private:
+  std::shared_ptr<const SteeringSearch> search_;
+  mutable SteeringMemory memory_;
+};
+
+bool Steering::found() const { return answer_->geodesic.has_value(); }
+const std::string& Steering::reason() const { return answer_->reason; }
+double Steering::distance() const { return answer_->distance(sense_); }
+const Geodesic* Steering::geodesic() const { return found() ? &*answer_->geodesic : nullptr; }
+
+bool Steering::at(double t, std::span<double> q) const {
+  return search_->point(*answer_, sense_, from_, to_, t, q);
+}
+
+SteeringFunction::SteeringFunction(Segment segment, const SteeringOptions& options)
+    : own_(std::make_shared<const Implementation>(std::move(segment), options)) {}
+
+int SteeringFunction::dof() const { return own_->search()->segment().dof; }
+const SteeringOptions& SteeringFunction::options() const { return own_->search()->options(); }
+const SceneInfo& SteeringFunction::info() const { return own_->search()->segment().info; }
+bool SteeringFunction::symmetric() const { return own_->search()->reversible(); }
+
+Steering SteeringFunction::steer(std::span<const double> from, std::span<const double> to) const {
+  SteeringQuestion question;
+  std::shared_ptr<const SteeringAnswer> answer = own_->answer(from, to, question);
+  return {own_->search(), std::move(answer), from, to, question.sense};
+}
+
+double SteeringFunction::distance(std::span<const double> from, std::span<const double> to) const {
+  thread_local SteeringQuestion question;
+  return own_->answer(from, to, question)->distance(question.sense);
+}
+
+bool SteeringFunction::interpolate(std::span<const double> from,
+                                   std::span<const double> to,
+                                   double t,
+                                   std::span<double> q) const {
+  thread_local SteeringQuestion question;
+  const SteeringMemory::Value answer = own_->answer(from, to, question);
+  return own_->search()->point(*answer, question.sense, from, to, t, q);
+}
+
+std::vector<Steering> SteeringFunction::alternatives(std::span<const double> from,
+                                                     std::span<const double> to,
+                                                     int count) const {
+  if (count < 1) {
+    throw std::invalid_argument("count is " + std::to_string(count) + ", must be >= 1");
+  }
+  SteeringQuestion question;
+  std::vector<std::shared_ptr<const SteeringAnswer>> answers;
+  std::string refusal = own_->search()->refusal(from, to);
+  if (refusal.empty()) {
+    question.ask(info(), own_->search()->rules(), from, to);
+    answers = own_->search()->answers(question, count);
+  } else {
+    answers.push_back(Implementation::refused(std::move(refusal)));
+  }
+  std::vector<Steering> ways;
+  for (auto& answer : answers) {
+    ways.push_back({own_->search(), std::move(answer), from, to, question.sense});
+  }
+  return ways;
+}
+
+}  // namespace carnot
