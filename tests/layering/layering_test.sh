@@ -33,7 +33,12 @@ broken() {
   sees="$std|$eigen|ceres/jet\.h|xsimd/[a-z_]+\.hpp|$core"
   only "$sees" lib/carnot/*.h
   only "$sees|$scenes" lib/carnot/scenes
-  only "$std|$eigen|ceres/[a-z_]+\.h|nlopt\.hp*|$core|carnot/shooting/[a-z0-9_]+\.h" shooting
+  shooting="$core|carnot/shooting/[a-z0-9_]+\.h"
+  ompl='ompl/([a-z]+/)+[A-Za-z0-9]+\.h'
+  only "$std|$eigen|ceres/[a-z_]+\.h|nlopt\.hp*|$shooting" \
+    $(find shooting -type f ! -name ompl_state_space.h)
+  adapter=shooting/carnot/shooting/ompl_state_space.h
+  [ ! -f $adapter ] || only "$std|$ompl|$shooting" $adapter
   only "$std|$posix|$eigen|gnuplot-iostream\.h|$core|carnot/plots/[a-z0-9_]+\.h" plots
   own=$(find apps -name '*.h' | sed 's:^apps/::; s:\.:\\.:' | tr '\n' '|')
   libraries='CLI/[A-Za-z]+\.hpp|nlohmann/[a-z_]+\.hpp|fmt/[a-z]+\.h'
@@ -45,6 +50,7 @@ broken() {
   for folder in apps/peers apps/micro; do
     [ ! -d $folder ] || only "$std|$peers|${own}$core|$scenes" $folder
   done
+  [ ! -d apps/ompl ] || only "$std|$ompl|$shooting|$scenes|carnot/plots/[a-z_]+\.h" apps/ompl
   umbrellas lib shooting plots
 }
 
@@ -94,6 +100,7 @@ must_fail shooting/carnot/shooting/bad.h '"carnot/plots/plot.h"'
 must_fail shooting/carnot/shooting/bad.cc '"carnot/scenes/vehicle.h"'
 must_fail shooting/carnot/shooting/bad.cc '"../../apps/scene_entry.h"'
 must_fail shooting/carnot/shooting/bad.cc '<gnuplot-iostream.h>'
+must_fail shooting/carnot/shooting/bad.h '<ompl/base/State.h>'
 must_fail plots/carnot/plots/bad.cc '"carnot/shooting/geodesic.h"'
 must_fail plots/carnot/plots/bad.h '<ceres/ceres.h>'
 must_fail apps/bad.cc '<gnuplot-iostream.h>'
