@@ -1,12 +1,16 @@
-// carnot benchmark: speed against error on three trajectories whose ends are known to many digits.
+// carnot benchmark: speed against error on three trajectories whose ends are known to many digits;
+// with --boundary-value, solvers of boundary-value problems from blind starts.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
+#include "benchmark_boundary_report.h"
 #include "benchmark_cache.h"
 #include "benchmark_report.h"
 #include "benchmark_rows.h"
@@ -18,6 +22,7 @@
 #include "progress_bar.h"
 #include "subcommands.h"
 #ifdef CARNOT_PEERS
+#include "peers/boundary_peers.h"
 #include "peers/peers.h"
 #endif
 
@@ -31,6 +36,7 @@ constexpr bool kWithPeers = false;
 std::vector<Contestant> peer_contestants(const BenchmarkProblem&, const BenchmarkLadder&) {
   return {};
 }
+std::vector<BoundarySolver> boundary_peers() { return {}; }
 #endif
 
 constexpr const char* kFooter = R"(
@@ -47,6 +53,13 @@ Their ends are computed in quadruple precision, twice, and kept in $XDG_CACHE_HO
                odeint-dopri5, odeint-bulirsch-stoer, cvode-adams, cvode-bdf; and ida on the
                differential-algebraic equations in (q, p, v, lambda)
 
+With --boundary-value: sideways parking of the vehicle and of the unicycle by 1, and
+heisenberg-group to (1, 0, 1), from --starts blind starts of every solver: random paths, relaxed
+before newton, ceres or nlopt:NAME shoot, and random momenta. What counts is verified by an
+independent integration. With --peers also ipopt on the direct midpoint transcription, 50 intervals,
+and gsl-hybridsj on single shooting. Then, over 1, 2, 4, ... 64 starts, the share of --targets random
+targets that are at the least action: --plot draws that. Takes some minutes.
+
 Times are the median CPU time of one trajectory over blocks, in rounds through all the rows of a
 scene, so that times within one run compare.
 
@@ -54,6 +67,7 @@ Examples
   carnot benchmark
   carnot benchmark vehicle --json
   carnot benchmark --plot speed.png --output speed.md
+  carnot benchmark --boundary-value --starts 32 --output solvers.md
 
 Exit status: 0 success, 1 a file or reference did not come about, 2 bad input, 130 interrupted.)";
 
@@ -61,6 +75,11 @@ struct Options {
   std::vector<std::string> scenes;
   bool peers = false;
   bool quick = false;
+  bool boundary_value = false;
+  std::string starts;
+  std::string targets;
+  std::string seed;
+  std::string threads;
   Destination destination;
 };
 
@@ -139,7 +158,70 @@ std::vector<BenchmarkScene> run_scenes(const std::vector<BenchmarkTrajectory>& t
   return scenes;
 }
 
+BoundaryOptions check_boundary(const Options& options) {
+  constexpr long kMost = 100000;
+  constexpr long kMostThreads = 1024;
+  if (!options.scenes.empty()) {
+    refuse("SCENE", options.scenes[0], "given besides --boundary-value", "no SCENE");
+  }
+  BoundaryOptions checked;
+  if (options.quick) checked.starts = checked.targets = 2;
+  const auto set = [](const char* name, const std::string& text, long most, int& value) {
+    if (!text.empty()) value = static_cast<int>(parse_integer(name, text, 1, most));
+  };
+  set("--starts", options.starts, kMost, checked.starts);
+  set("--targets", options.targets, kMost, checked.targets);
+  set("--threads", options.threads, kMostThreads, checked.threads);
+  if (!options.seed.empty()) checked.seed = parse_seed("--seed", options.seed);
+  return checked;
+}
+
+// Options that only --boundary-value knows.
+void check_no_boundary(const Options& options) {
+  for (const auto& [name, text] : {std::pair{"--starts", options.starts},
+                                   {"--targets", options.targets},
+                                   {"--seed", options.seed},
+                                   {"--threads", options.threads}}) {
+    if (!text.empty()) refuse(name, text, "without --boundary-value", "only with it");
+  }
+}
+
+int run_boundary(const Options& options, const std::vector<std::string>& arguments) {
+  const auto begin = std::chrono::steady_clock::now();
+  check_peers(options.peers);
+  check_destination(options.destination);
+  const BoundaryOptions checked = check_boundary(options);
+  std::vector<BoundarySolver> solvers = own_boundary_solvers();
+  if (options.peers) {
+    for (BoundarySolver& peer : boundary_peers()) solvers.push_back(std::move(peer));
+  }
+  std::optional<BoundaryResult> found;
+  {
+    ProgressBar bar("%", 100, options.destination.quiet);
+    found = run_boundary_benchmark(checked, solvers, bar.callback());
+  }
+  Result result;
+  result.delivered = found.has_value();
+  if (!found) result.message = "stopped";
+  const BoundaryResult measured = found.value_or(BoundaryResult{});
+  result.json = result_head(arguments);
+  result.json["status"] = result.delivered ? "completed" : "failed";
+  result.json["message"] = result.message;
+  result.json["processor"] = processor_name();
+  result.json["compiler"] = __VERSION__;
+  result.json["seed"] = checked.seed;
+  add_boundary_json(measured, result.json);
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+  result.json["elapsed_seconds"] = elapsed.count();
+  result.text = [&] { return boundary_text(measured); };
+  result.draw = [&](const std::string& file) { return draw_boundary(file, measured); };
+  result.csv = [&] { return boundary_markdown(measured, arguments); };
+  return deliver(result, options.destination);
+}
+
 int run_benchmark(const Options& options, const std::vector<std::string>& arguments) {
+  if (options.boundary_value) return run_boundary(options, arguments);
+  check_no_boundary(options);
   const auto clock = [] { return std::chrono::steady_clock::now(); };
   const auto begin = clock();
   check_peers(options.peers);
@@ -177,6 +259,16 @@ void add_benchmark(CLI::App& app, Invocation& invocation) {
       ->type_name("");
   benchmark.add_flag("--peers", options->peers, "add other libraries, where built with them");
   benchmark.add_flag("--quick", options->quick, "few rows and short blocks: rough times");
+  benchmark.add_flag("--boundary-value",
+                     options->boundary_value,
+                     "compare solvers of boundary-value problems instead");
+  const auto add = [&](const char* name, std::string& value, const char* help) {
+    benchmark.add_option(name, value, help)->type_name("N");
+  };
+  add("--starts", options->starts, "blind starts of each solver (64)");
+  add("--targets", options->targets, "random targets of the curve over starts (20)");
+  add("--seed", options->seed, "fixes starts and targets (0)");
+  add("--threads", options->threads, "threads; the answer does not depend on it (all)");
   Destination& destination = options->destination;
   benchmark.add_option("--plot", destination.plot, "draw a .png, .svg or .pdf")->type_name("FILE");
   benchmark.add_option("--output", destination.output, "write a .json, or a report as .md")

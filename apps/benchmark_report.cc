@@ -61,18 +61,6 @@ Cells row_table(const BenchmarkScene& scene) {
   return cells;
 }
 
-std::string markdown_table(const Cells& cells) {
-  std::string text;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    text += fmt::format("| {} |\n", fmt::join(cells[i], " | "));
-    if (i > 0) continue;
-    text += "|---|";
-    for (std::size_t k = 1; k < cells[0].size(); ++k) text += "--:|";
-    text += '\n';
-  }
-  return text;
-}
-
 std::string heading(const BenchmarkScene& scene) {
   return fmt::format("T = {:g}, (q, p) = {}, reference good to {:.0e}",
                      scene.problem.trajectory.duration,

@@ -34,4 +34,16 @@ std::string text_vector(const std::vector<double>& values, int digits) {
   return out + ")";
 }
 
+std::string markdown_table(const std::vector<std::vector<std::string>>& cells) {
+  std::string text;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    text += fmt::format("| {} |\n", fmt::join(cells[i], " | "));
+    if (i > 0) continue;
+    text += "|---|";
+    for (std::size_t k = 1; k < cells[0].size(); ++k) text += "--:|";
+    text += '\n';
+  }
+  return text;
+}
+
 }  // namespace carnot::apps

@@ -47,8 +47,9 @@ broken() {
     $(find apps -maxdepth 1 -type f)
   peers='boost/numeric/odeint/[a-z0-9_/]+\.hpp|gsl/[a-z0-9_]+\.h|benchmark/benchmark\.h'
   peers="$peers|(cvode|ida|nvector|sundials|sunlinsol|sunmatrix|sunnonlinsol)/[a-z_]+\.h"
+  peers="$peers|coin/Ip[A-Za-z]+\.hpp"
   for folder in apps/peers apps/micro; do
-    [ ! -d $folder ] || only "$std|$peers|${own}$core|$scenes" $folder
+    [ ! -d $folder ] || only "$std|$peers|${own}$shooting|$scenes" $folder
   done
   [ ! -d apps/ompl ] || only "$std|$ompl|$shooting|$scenes|carnot/plots/[a-z_]+\.h" apps/ompl
   umbrellas lib shooting plots
