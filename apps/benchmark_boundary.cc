@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <random>
 
 #include "benchmark_clock.h"
 #include "carnot/parallel.h"
@@ -13,6 +11,7 @@
 #include "carnot/shooting/polish.h"
 #include "carnot/shooting/relaxation.h"
 #include "carnot/shooting/starts.h"
+#include "random_target.h"
 #include "scene_choice.h"
 
 namespace carnot::apps {
@@ -121,19 +120,6 @@ BoundaryRow row_of(const BoundarySolver& solver,
   return row;
 }
 
-// Within three lengths, all angles.
-std::vector<double> random_target(const SceneEntry& entry, std::uint64_t seed, int i) {
-  constexpr double kReach = 3;
-  std::seed_seq sequence{seed, seed >> 32U, static_cast<std::uint64_t>(i)};
-  std::mt19937_64 random(sequence);
-  std::vector<double> to;
-  for (const Coordinate& coordinate : entry.info.configuration) {
-    const double reach = coordinate.period > 0 ? std::numbers::pi : kReach;
-    to.push_back(std::uniform_real_distribution<double>(-reach, reach)(random));
-  }
-  return to;
-}
-
 void add_to_curve(const std::vector<BoundaryTrial>& trials, std::vector<BoundaryPoint>& points) {
   const double least = least_of(trials);
   double seconds = 0;
@@ -153,14 +139,14 @@ bool run_curve(const BoundaryOptions& options, const Progress& progress, Boundar
   const double all = static_cast<double>(problems().size()) * options.targets;
   double done = 0;
   for (const BoundaryProblemEntry& problem : problems()) {
-    const SceneEntry& entry = find_scene(problem.scene);
+    const SceneInfo& info = find_scene(problem.scene).info;
     std::vector<BoundaryPoint> points;
     for (int starts = 1; starts <= kCurveStarts; starts *= 2) {
       points.push_back({problem.scene, starts, 0, 0, 0, 0});
     }
     for (int i = 0; i < options.targets; ++i) {
       if (progress && !progress(done++ / all)) return false;
-      const auto target = make_problem(problem.scene, random_target(entry, options.seed, i));
+      const auto target = make_problem(problem.scene, random_target(info, options.seed, i));
       add_to_curve(try_starts(solver, target, options, kCurveStarts), points);
     }
     result.curve.insert(result.curve.end(), points.begin(), points.end());

@@ -98,6 +98,7 @@ void build(CLI::App& app, Invocation& invocation) {
   add_verify(app, invocation);
   add_paper(app, invocation);
   add_benchmark(app, invocation);
+  add_stress(app, invocation);
   app.require_subcommand(0, 1);
 }
 

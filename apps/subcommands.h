@@ -23,5 +23,6 @@ void add_methods(CLI::App& app, Invocation& invocation);
 void add_verify(CLI::App& app, Invocation& invocation);
 void add_paper(CLI::App& app, Invocation& invocation);
 void add_benchmark(CLI::App& app, Invocation& invocation);
+void add_stress(CLI::App& app, Invocation& invocation);
 
 }  // namespace carnot::apps

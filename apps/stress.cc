@@ -1,0 +1,218 @@
+// carnot stress: default searches for the geodesics to many random targets.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <memory>
+
+#include "benchmark_clock.h"
+#include "carnot/parallel.h"
+#include "carnot/shooting/geodesic.h"
+#include "delivery.h"
+#include "geodesic_result.h"
+#include "method_table.h"
+#include "numbers.h"
+#include "progress_bar.h"
+#include "random_target.h"
+#include "scene_choice.h"
+#include "subcommands.h"
+#include "text_table.h"
+
+namespace carnot::apps {
+namespace {
+
+constexpr const char* kFooter = R"(
+From the origin to targets drawn uniformly, positions within 3, angles within pi, on the cover; each
+the default search for one geodesic on one thread, many at a time. "solved" has been verified by an
+independent integration, at knots where the end point is too sensitive. Times are CPU times.
+
+Examples
+  carnot stress vehicle
+  carnot stress trailer1 --targets 1000 --seed 7 --json
+
+Exit status: 0 success, also where targets are left unsolved; 2 bad input, 130 interrupted.)";
+
+struct Options {
+  std::string scene;
+  std::vector<std::string> set;
+  std::string method;
+  std::string targets = "1000";
+  std::string seed = "0";
+  std::string threads;
+  Destination destination;
+};
+
+struct Trial {
+  std::vector<double> to;
+  double seconds = 0;
+  bool solved = false;
+  bool at_knots = false;
+  Label label = Label::kUnknown;
+  std::string message;
+};
+
+Trial try_target(const Segment& segment, std::uint64_t seed, int i) {
+  const double began = thread_seconds();
+  Trial trial;
+  trial.to = random_target(segment.info, seed, i);
+  GeodesicOptions options;
+  options.seed = seed;
+  options.threads = 1;
+  options.samples = 0;
+  const std::vector<double> from(trial.to.size(), 0.0);
+  try {
+    const GeodesicReport report = find_geodesics({segment, from, trial.to}, options);
+    trial.message = report.message;
+    trial.solved = !report.geodesics.empty();
+    if (trial.solved) {
+      trial.at_knots = report.geodesics[0].verification == Verification::kKnots;
+      trial.label = report.geodesics[0].label;
+    }
+  } catch (const std::invalid_argument& error) {  // e.g. constraints that are dependent there
+    trial.message = error.what();
+  }
+  trial.seconds = thread_seconds() - began;
+  return trial;
+}
+
+// Empty when stopped.
+std::vector<Trial> try_all(
+    const Segment& segment, int targets, std::uint64_t seed, int threads, const Progress& go_on) {
+  constexpr int kBatch = 16;  // between two looks at the progress
+  std::vector<Trial> trials(targets);
+  for (int first = 0; first < targets; first += kBatch * threads) {
+    if (!go_on(static_cast<double>(first) / targets)) return {};
+    const int count = std::min(kBatch * threads, targets - first);
+    parallel_for(
+        count, threads, [&](int i) { trials[first + i] = try_target(segment, seed, first + i); });
+  }
+  return trials;
+}
+
+// The first words of a message: all but its numbers and its advice.
+std::string reason_of(const Trial& trial) {
+  const std::string reason = trial.message.substr(0, trial.message.find_first_of("(:;"));
+  return reason.substr(0, reason.find_last_not_of(' ') + 1);
+}
+
+double quantile(const std::vector<Trial>& trials, double share) {
+  std::vector<double> seconds;
+  for (const Trial& trial : trials) seconds.push_back(trial.seconds);
+  const auto at = seconds.begin() +
+                  static_cast<std::ptrdiff_t>(share * static_cast<double>(seconds.size() - 1));
+  std::nth_element(seconds.begin(), at, seconds.end());
+  return *at;
+}
+
+Json summary_of(const std::vector<Trial>& trials) {
+  int solved = 0;
+  int at_knots = 0;
+  std::map<std::string, int> labels;
+  std::map<std::string, int> reasons;
+  Json failures = Json::array();
+  for (const Trial& trial : trials) {
+    solved += trial.solved ? 1 : 0;
+    at_knots += trial.at_knots ? 1 : 0;
+    if (trial.solved) {
+      ++labels[name_of(trial.label)];
+    } else {
+      ++reasons[reason_of(trial)];
+      failures.push_back({{"to", trial.to}, {"message", trial.message}});
+    }
+  }
+  const auto count = static_cast<double>(trials.size());
+  return {{"targets", trials.size()},
+          {"solved", solved},
+          {"solved_share", solved / count},
+          {"verified_at_knots", at_knots},
+          {"labels", labels},
+          {"reasons", reasons},
+          {"median_seconds", quantile(trials, 0.5)},
+          {"p90_seconds", quantile(trials, 0.9)},
+          {"failures", failures}};
+}
+
+std::string stress_text(const Json& json) {
+  const auto count = [&json](const char* key) { return json[key].get<long>(); };
+  const auto milliseconds = [&json](const char* key) {
+    return fmt::format("{:.3g} ms", 1e3 * json[key].get<double>());
+  };
+  std::vector<std::vector<std::string>> rows{
+      {"scene", json["scene"].get<std::string>()},
+      {"targets", std::to_string(count("targets"))},
+      {"solved and verified",
+       fmt::format("{} ({:.2f} %)", count("solved"), 1e2 * json["solved_share"].get<double>())},
+      {"verified at knots", std::to_string(count("verified_at_knots"))},
+      {"median CPU time", milliseconds("median_seconds")},
+      {"90 % within", milliseconds("p90_seconds")},
+      {"wall time", fmt::format("{:.3g} s", json["elapsed_seconds"].get<double>())}};
+  for (const auto& [label, times] : json["labels"].items()) {
+    rows.push_back({label, std::to_string(times.get<long>())});
+  }
+  for (const auto& [reason, times] : json["reasons"].items()) {
+    rows.push_back({"unsolved", fmt::format("{}: {}", times.get<long>(), reason)});
+  }
+  return text_table(rows);
+}
+
+int run_stress(const Options& options, const std::vector<std::string>& arguments) {
+  constexpr long kMostTargets = 10000000;
+  constexpr long kMostThreads = 1024;
+  const auto begin = std::chrono::steady_clock::now();
+  const SceneEntry& entry = find_scene(options.scene);
+  const ParameterValues parameters = parse_parameters(entry, options.set);
+  const Method& method = choose_method(options.method, "rattle6", entry);
+  const auto targets =
+      static_cast<int>(parse_integer("--targets", options.targets, 1, kMostTargets));
+  const std::uint64_t seed = parse_seed("--seed", options.seed);
+  int threads = 0;
+  if (!options.threads.empty()) {
+    threads = static_cast<int>(parse_integer("--threads", options.threads, 1, kMostThreads));
+  }
+  check_table_output(options.destination);
+  if (entry.holonomic > 0) {
+    refuse("SCENE", options.scene, "random targets miss its manifold", "scenes without h(q) = 0");
+  }
+  const Segment segment = entry.make(parameters, method.name);
+  ProgressBar bar("targets", targets, options.destination.quiet);
+  const std::vector<Trial> trials =
+      try_all(segment, targets, seed, thread_count(threads), bar.callback());
+  if (trials.empty()) return kInterrupted;
+  Result result;
+  result.json = result_head(arguments);
+  result.json["scene"] = entry.info.name;
+  result.json["parameters"] = parameters;
+  result.json["method"] = method.name;
+  result.json["seed"] = seed;
+  result.json.update(summary_of(trials));
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+  result.json["elapsed_seconds"] = elapsed.count();
+  result.text = [&] { return stress_text(result.json); };
+  return deliver(result, options.destination);
+}
+
+}  // namespace
+
+void add_stress(CLI::App& app, Invocation& invocation) {
+  auto options = std::make_shared<Options>();
+  CLI::App& stress = *app.add_subcommand("stress", "Find geodesics to many random targets.");
+  stress.add_option("SCENE", options->scene, "a name from `carnot scenes`")->type_name("");
+  stress.add_option("--set", options->set, "set a parameter of the scene (repeatable)")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
+    stress.add_option(name, value, help)->type_name(type);
+  };
+  add("--method", options->method, "NAME", "a name from `carnot methods` (gauss16)");
+  add("--targets", options->targets, "N", "how many (1000)");
+  add("--seed", options->seed, "N", "fixes all randomness (0)");
+  add("--threads", options->threads, "N", "threads; the answer does not depend on it (all)");
+  add_table_options(stress, options->destination);
+  stress.footer(kFooter);
+  stress.callback([options, &invocation] {
+    invocation.exit_status = run_stress(*options, invocation.arguments);
+  });
+}
+
+}  // namespace carnot::apps

@@ -1,0 +1,94 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "command.h"
+
+namespace carnot::apps {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+TEST(Stress, HoldsItsContract) {
+  const auto json = run({"stress", "unicycle", "--targets", "20", "--json"}).json();
+  EXPECT_THAT(keys(json),
+              ElementsAre("version",
+                          "arguments",
+                          "scene",
+                          "parameters",
+                          "method",
+                          "seed",
+                          "targets",
+                          "solved",
+                          "solved_share",
+                          "verified_at_knots",
+                          "labels",
+                          "reasons",
+                          "median_seconds",
+                          "p90_seconds",
+                          "failures",
+                          "elapsed_seconds"));
+  EXPECT_EQ(json["targets"], 20);
+  EXPECT_EQ(json["solved"], 20);
+  EXPECT_EQ(json["labels"]["locally-minimal"], 20);
+  EXPECT_LE(json["median_seconds"], json["p90_seconds"]);
+  EXPECT_THAT(run({"stress", "unicycle", "--targets", "2"}).out, HasSubstr("2 (100.00 %)"));
+}
+
+TEST(Stress, IsTheSameOnAnyNumberOfThreads) {
+  const auto counts = [](const std::string& threads) {
+    auto json = run({"stress",
+                     "heisenberg-group",
+                     "--targets",
+                     "30",
+                     "--seed",
+                     "3",
+                     "--json",
+                     "--threads",
+                     threads})
+                    .json();
+    for (const char* key : {"arguments", "median_seconds", "p90_seconds", "elapsed_seconds"}) {
+      json.erase(key);
+    }
+    return json.dump();
+  };
+  EXPECT_EQ(counts("1"), counts("3"));
+}
+
+// Each target is solved or has a reason.
+TEST(Stress, CountsReasons) {
+  const Outcome outcome = run({"stress", "trailer1", "--targets", "5", "--json"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = outcome.json();
+  int with_reason = 0;
+  for (const auto& [reason, count] : json["reasons"].items()) {
+    EXPECT_FALSE(reason.empty());
+    with_reason += count.get<int>();
+  }
+  EXPECT_EQ(json["solved"].get<int>() + with_reason, 5);
+  EXPECT_EQ(json["failures"].size(), with_reason);
+  for (const auto& failure : json["failures"]) EXPECT_NE(failure["message"], "");
+}
+
+TEST(Stress, RefusesBadInput) {
+  const std::map<std::vector<std::string>, std::string> cases{
+      {{"stress", "unicicle"}, "did you mean unicycle?"},
+      {{"stress", "rod-skate"}, "manifold"},
+      {{"stress", "unicycle", "--targets", "0"}, "--targets '0'"},
+      {{"stress", "unicycle", "--seed", "-1"}, "--seed"},
+      {{"stress", "unicycle", "--set", "gamma=1"}, "--set"},
+      {{"stress", "unicycle", "--output", "x.csv"}, "--output"}};
+  for (const auto& [arguments, message] : cases) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_THAT(outcome.err, HasSubstr(message));
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
+  }
+}
+
+}  // namespace
+}  // namespace carnot::apps
