@@ -1,9 +1,9 @@
 #include "carnot/shooting/relaxation.h"
 
-#include <ceres/ceres.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include "carnot/shooting/chain_least_squares.h"
 
 namespace carnot {
 namespace {
@@ -15,40 +15,43 @@ struct Transcription {
   double rho;
   double ceiling;  // c > V; used where the scene has a potential
   bool potential;
+
+  [[nodiscard]] int residuals() const {
+    return segment.dof + segment.transcribed + (potential ? 1 : 0);
+  }
 };
 
-// One interval: parameters q0, q1; residuals sqrt(h) r, sqrt(h rho) (G v - lambda / rho) and, with
-// a potential, sqrt(2 h (c - V)).
-class Interval final : public ceres::CostFunction {
+// Residuals sqrt(h) r, sqrt(h rho) (G v - lambda / rho) and, with a potential, sqrt(2 h (c - V)) of
+// one interval; keeps room for what it needs on the way.
+class Interval {
  public:
-  Interval(const Transcription& shared, const double* lambda) : shared_(shared), lambda_(lambda) {
-    const int n = shared.segment.dof;
-    set_num_residuals(n + shared.segment.transcribed + (shared.potential ? 1 : 0));
-    *mutable_parameter_block_sizes() = {n, n};
-    qm_.resize(n);
-    v_.resize(n);
-    terms_.resize(n + shared.segment.transcribed + 1);
-    jacobian_.resize(terms_.size() * 2 * n);
-  }
+  explicit Interval(const Transcription& shared)
+      : shared_(shared),
+        qm_(shared.segment.dof),
+        v_(shared.segment.dof),
+        terms_(shared.segment.dof + shared.segment.transcribed + 1),
+        derivative_(terms_.size() * 2 * shared.segment.dof) {}
 
-  bool Evaluate(double const* const* q, double* residuals, double** jacobians) const override {
+  // At the nodes q, 2n numbers; see chain_least_squares.h.
+  bool evaluate(const double* lambda, const double* q, double* residuals, double* jacobian) {
     const int n = shared_.segment.dof;
     for (int i = 0; i < n; ++i) {
-      qm_[i] = 0.5 * (q[0][i] + q[1][i]);
-      v_[i] = (q[1][i] - q[0][i]) / shared_.h;
+      qm_[i] = 0.5 * (q[i] + q[n + i]);
+      v_[i] = (q[n + i] - q[i]) / shared_.h;
     }
-    double* derivative = jacobians != nullptr ? jacobian_.data() : nullptr;
+    double* derivative = jacobian != nullptr ? derivative_.data() : nullptr;
     if (!shared_.segment.midpoint(qm_.data(), v_.data(), terms_.data(), derivative)) return false;
-    for (int row = 0; row < num_residuals(); ++row) {
-      const double weight = scale(row, residuals);
+    for (int row = 0; row < shared_.residuals(); ++row) {
+      const double weight = scale(row, lambda, residuals);
       if (!std::isfinite(weight) || !std::isfinite(residuals[row])) return false;
-      if (jacobians == nullptr) continue;
-      const double* d = jacobian_.data() + row * 2 * n;
+      if (jacobian == nullptr) continue;
+      const double* d = derivative + row * 2 * n;
+      double* to = jacobian + row * 2 * n;
       for (int i = 0; i < n; ++i) {
         const double by_q = 0.5 * weight * d[i];
         const double by_v = weight * d[n + i] / shared_.h;
-        if (jacobians[0] != nullptr) jacobians[0][row * n + i] = by_q - by_v;
-        if (jacobians[1] != nullptr) jacobians[1][row * n + i] = by_q + by_v;
+        to[i] = by_q - by_v;
+        to[n + i] = by_q + by_v;
       }
     }
     return true;
@@ -56,7 +59,7 @@ class Interval final : public ceres::CostFunction {
 
  private:
   // Sets residual `row` from the terms, returns d residual / d term.
-  double scale(int row, double* residuals) const {
+  double scale(int row, const double* lambda, double* residuals) const {
     const int n = shared_.segment.dof;
     if (row < n) {
       const double weight = std::sqrt(shared_.h);
@@ -65,7 +68,7 @@ class Interval final : public ceres::CostFunction {
     }
     if (row < n + shared_.segment.transcribed) {
       const double weight = std::sqrt(shared_.h * shared_.rho);
-      residuals[row] = weight * (terms_[row] - lambda_[row - n] / shared_.rho);
+      residuals[row] = weight * (terms_[row] - lambda[row - n] / shared_.rho);
       return weight;
     }
     residuals[row] = std::sqrt(2 * shared_.h * (shared_.ceiling - terms_[row]));
@@ -73,11 +76,10 @@ class Interval final : public ceres::CostFunction {
   }
 
   const Transcription& shared_;
-  const double* lambda_;
-  mutable std::vector<double> qm_;
-  mutable std::vector<double> v_;
-  mutable std::vector<double> terms_;
-  mutable std::vector<double> jacobian_;
+  std::vector<double> qm_;
+  std::vector<double> v_;
+  std::vector<double> terms_;
+  std::vector<double> derivative_;
 };
 
 // Reads the terms of all intervals of a path.
@@ -125,19 +127,6 @@ PathTerms terms_of(const Segment& segment, double h, const Path& path) {
   return result;
 }
 
-ceres::Solver::Options inner_options(const RelaxationOptions& options) {
-  ceres::Solver::Options inner;
-  inner.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  inner.max_num_iterations = options.inner_iterations;
-  inner.function_tolerance = 1e-4;
-  inner.gradient_tolerance = 1e-8;
-  inner.parameter_tolerance = 1e-6;
-  inner.initial_trust_region_radius = 1 / options.caution;
-  inner.num_threads = 1;
-  inner.logging_type = ceres::SILENT;
-  return inner;
-}
-
 }  // namespace
 
 Relaxation relax(const BoundaryValueProblem& problem,
@@ -153,25 +142,17 @@ Relaxation relax(const BoundaryValueProblem& problem,
   std::vector<double>& lambda = path.lambda;
 
   Relaxation result;
-  // Ceres would log an error where the first evaluation fails; a library must not print.
   if (state.constraint.size() != lambda.size() || !std::isfinite(state.action)) return result;
-  ceres::Problem::Options ownership;
-  ownership.enable_fast_removal = false;
-  ceres::Problem least_squares(ownership);
-  for (int i = 0; i < path.intervals; ++i) {
-    least_squares.AddResidualBlock(new Interval(shared, lambda.data() + i * segment.transcribed),
-                                   nullptr,
-                                   path.configuration(i),
-                                   path.configuration(i + 1));
-  }
-  least_squares.SetParameterBlockConstant(path.configuration(0));
-  least_squares.SetParameterBlockConstant(path.configuration(path.intervals));
-
+  Interval interval(shared);
+  const int k = segment.transcribed;
+  const ChainResiduals residuals = [&](int i, const double* q, double* values, double* jacobian) {
+    return interval.evaluate(lambda.data() + i * k, q, values, jacobian);
+  };
+  ChainOptions inner;
+  inner.max_iterations = options.inner_iterations;
+  inner.radius = 1 / options.caution;
   for (int outer = 0; outer < options.outer_iterations; ++outer) {
-    ceres::Solver::Summary summary;
-    ceres::Solve(inner_options(options), &least_squares, &summary);
-    result.iterations += static_cast<int>(summary.iterations.size());
-    if (summary.termination_type == ceres::FAILURE) break;
+    result.iterations += minimise_chain(residuals, shared.residuals(), segment.dof, inner, path.q);
     state = terms_of(segment, h, path);
     if (state.constraint.size() != lambda.size()) break;
     for (std::size_t i = 0; i < lambda.size(); ++i) lambda[i] -= shared.rho * state.constraint[i];

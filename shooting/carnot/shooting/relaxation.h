@@ -5,7 +5,7 @@
 //
 //   sum_i h [ L - lambda.G v + rho |G v|^2 / 2 ],      lambda <- lambda - rho G v,
 //
-// each inner problem a sum of squares for Ceres (sparse normal equations, one block per interval).
+// each inner problem a sum of squares on a chain of nodes (chain_least_squares.h).
 // At the solution lambda are the multipliers and -D1 F_d the momentum of the midpoint rule itself
 // (lib: midpoint_transcription.h), so that shooting starts from a discrete extremal. A potential
 // enters as sqrt(2 (c - V)) with c above V along the path.
@@ -18,7 +18,7 @@ namespace carnot {
 
 struct RelaxationOptions {
   int outer_iterations = 8;   // updates of the multipliers
-  int inner_iterations = 12;  // Ceres iterations between two of them
+  int inner_iterations = 16;  // least-squares iterations between two of them
   double penalty = 10;        // rho relative to the mass
   double caution = 1e-4;      // first damping: larger keeps to the valley where the path starts
   double feasibility = 1e-3;  // |G v| / |v| at which to stop

@@ -1,0 +1,117 @@
+#include "carnot/shooting/chain_least_squares.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <vector>
+
+namespace carnot {
+namespace {
+
+constexpr double kTight = 1e-12;
+constexpr double kDamped = 1e-9;  // the damping holds a linear problem back by 1e-12, repeatedly
+// A cost that round-off changes by eps says where it is least to sqrt(eps) only; slopes of 100.
+constexpr double kFlat = 100 * 1.5e-8;
+
+// Stops where nothing changes any more.
+ChainOptions to_the_end() {
+  ChainOptions options;
+  options.max_iterations = 200;
+  options.function_tolerance = options.gradient_tolerance = 0;
+  options.step_tolerance = kTight;
+  options.radius = 1e12;
+  return options;
+}
+
+// sum |x_{i+1} - x_i|^2: equidistant points on the line between the ends.
+bool stretched(int /*i*/, const double* x, double* residual, double* jacobian) {
+  for (int j = 0; j < 2; ++j) residual[j] = x[2 + j] - x[j];
+  if (jacobian == nullptr) return true;
+  const double derivative[] = {-1, 0, 1, 0, 0, -1, 0, 1};
+  std::copy(std::begin(derivative), std::end(derivative), jacobian);
+  return true;
+}
+
+TEST(ChainLeastSquares, SolvesALinearProblem) {
+  std::vector<double> x{1, -2, 7, 7, 0, 3, -5, 1, 9, 2};
+  EXPECT_GT(minimise_chain(stretched, 2, 2, to_the_end(), x), 0);
+  for (int i = 0; i <= 4; ++i) {
+    EXPECT_NEAR(x[2 * i], 1 + 2 * i, kDamped);
+    EXPECT_NEAR(x[2 * i + 1], -2 + i, kDamped);
+  }
+}
+
+// Residuals x_{i+1} - x_i and c (x_i^2 - 1), which are not linear.
+double cost_of(const std::vector<double>& x, std::vector<double>* slope) {
+  double sum = 0;
+  if (slope != nullptr) slope->assign(x.size(), 0.0);
+  for (std::size_t i = 0; i + 1 < x.size(); ++i) {
+    const double rise = x[i + 1] - x[i];
+    const double bent = 2 * (x[i] * x[i] - 1);
+    sum += 0.5 * (rise * rise + bent * bent);
+    if (slope == nullptr) continue;
+    (*slope)[i] += -rise + bent * 4 * x[i];
+    (*slope)[i + 1] += rise;
+  }
+  return sum;
+}
+
+bool bent(int /*i*/, const double* x, double* residual, double* jacobian) {
+  residual[0] = x[1] - x[0];
+  residual[1] = 2 * (x[0] * x[0] - 1);
+  if (jacobian == nullptr) return true;
+  jacobian[0] = -1;
+  jacobian[1] = 1;
+  jacobian[2] = 4 * x[0];
+  jacobian[3] = 0;
+  return true;
+}
+
+TEST(ChainLeastSquares, EndsWhereTheGradientVanishesAndNeverRises) {
+  ChainOptions one = to_the_end();
+  one.max_iterations = 1;
+  std::vector<double> x{-2, 0.3, 5, -4, 0.1, 2};
+  double cost = cost_of(x, nullptr);
+  constexpr int kIterations = 100;
+  for (int i = 0; i < kIterations; ++i) {
+    minimise_chain(bent, 2, 1, one, x);
+    const double next = cost_of(x, nullptr);
+    EXPECT_LE(next, cost);
+    cost = next;
+  }
+  minimise_chain(bent, 2, 1, to_the_end(), x);
+  std::vector<double> slope;
+  cost_of(x, &slope);
+  for (std::size_t i = 1; i + 1 < x.size(); ++i) EXPECT_NEAR(slope[i], 0, kFlat);
+  EXPECT_EQ(x.front(), -2);
+  EXPECT_EQ(x.back(), 2);
+}
+
+TEST(ChainLeastSquares, DoesNothingWhereThereIsNothingToDo) {
+  std::vector<double> ends{1, 2, 3, 4};
+  EXPECT_EQ(minimise_chain(stretched, 2, 2, {}, ends), 0);
+  std::vector<double> tight{0, 0, 1, 1, 2, 2};
+  EXPECT_EQ(minimise_chain(stretched, 2, 2, {}, tight), 0);
+}
+
+// Residuals that do not exist everywhere: the path stays where they do.
+TEST(ChainLeastSquares, KeepsWithinWhereTheResidualsExist) {
+  const auto none = [](int, const double*, double*, double*) { return false; };
+  std::vector<double> x{0, 1, 2.5};
+  EXPECT_EQ(minimise_chain(none, 1, 1, {}, x), 0);
+  EXPECT_EQ(x[1], 1);
+  const auto logarithms = [](int, const double* at, double* residual, double* jacobian) {
+    if (!(at[0] > 0 && at[1] > 0)) return false;
+    residual[0] = std::log(at[1] / at[0]);
+    if (jacobian != nullptr) jacobian[0] = -1 / at[0], jacobian[1] = 1 / at[1];
+    return true;
+  };
+  std::vector<double> far{1, 1000, 4};
+  minimise_chain(logarithms, 1, 1, to_the_end(), far);
+  EXPECT_NEAR(far[1], 2, kFlat);  // the geometric mean
+}
+
+}  // namespace
+}  // namespace carnot
