@@ -27,10 +27,13 @@ constexpr int kArtefacts = 3;  // of a round, that are more than the rest: the g
 constexpr int kMaxStiffness = 2;
 constexpr int kMaxDescents = 4;  // sweeps below an extremal that is no minimum
 constexpr int kMaxStartsAll = 240;
-constexpr int kSweeps = 24;            // rounds of near hits, where more than the best is wanted
-constexpr int kEnoughHits = 3;         // of the least action, before a search for it ends
-constexpr double kRival = 0.02;        // extremals this close to the least action, relative,
-constexpr int kConvergedPerRival = 5;  // make the search longer: there may be another
+constexpr int kSweeps = 24;              // rounds of near hits, where more than the best is wanted
+constexpr int kEnoughHits = 3;           // of the least action, before a search for it ends
+constexpr double kRival = 0.02;          // extremals this close to the least action, relative,
+constexpr int kConvergedPerRival = 5;    // make the search longer: there may be another
+constexpr double kMostConverged = 0.75;  // share of the starts of an easy problem, that converge
+constexpr double kMostHits = 0.6;        // and that hit the least action
+constexpr double kClearly = 0.2;         // above the least action, relative; grids err by less
 constexpr double kSameDiscreteAction = 1e-6;
 
 double largest_momentum(const Path& path) {
@@ -53,7 +56,7 @@ bool Search::run() {
     const double share = static_cast<double>(starts_) / limit;
     if (!goes_on(sweeps > 0 ? 0.5 * share : share)) return false;
     const int count = std::min(kRound, limit - starts_);
-    if (by_paths && descends_ && starts_ >= kMinStarts && descents < kMaxDescents) {
+    if (by_paths && descends_ && descents < kMaxDescents) {
       sweep_round(descents++);
       limit += kRound;
     } else {
@@ -91,6 +94,9 @@ std::vector<int> Search::hits() const {
   for (std::size_t i = 0; i < hits_.size(); ++i) {
     if (hits_[i] > 0) hits.push_back(hits_[i]);
   }
+  for (const Discrete& known : discrete_) {
+    if (known.extremal == kTooLong) hits.push_back(known.pending_hits);
+  }
   return hits;
 }
 
@@ -116,9 +122,11 @@ std::size_t Search::best() const {
 
 bool Search::settled() {
   if (options_.starts > 0 || extremals_.empty()) return false;
+  const bool early = starts_ < kMinStarts;
+  if (early && (wants_more() || converged_ < kMostConverged * starts_)) return false;
   const ConjugateTimes& conjugate = conjugate_times_of(problem_, extremals_[best()]);
   descends_ = conjugate.known && conjugate.times.size() > std::size_t(conjugate.at_end);
-  if (wants_more() || descends_ || starts_ < kMinStarts) return false;
+  if (wants_more() || descends_) return false;
   const double least = extremals_[best()].geodesic.action;
   int hits = 0;
   int rivals = 0;
@@ -128,6 +136,7 @@ bool Search::settled() {
     if (above <= kSameAction * std::abs(least)) hits += hits_[i];
     if (above <= kRival * std::abs(least)) ++rivals;
   }
+  if (early && (rivals > 1 || hits < kMostHits * starts_)) return false;
   return hits >= kEnoughHits && converged_ >= kConvergedPerRival * rivals;
 }
 
@@ -199,38 +208,65 @@ void Search::sweep_round(int round) {
   absorb(candidates);
 }
 
+std::vector<std::size_t> Search::next_to_polish(std::vector<std::size_t>& fresh) {
+  if (wants_more() || std::isfinite(options_.max_length)) return std::exchange(fresh, {});
+  bool verified = false;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Discrete& known : discrete_) {
+    verified = verified || known.extremal >= 0;
+    if (known.extremal >= 0) least = std::min(least, known.action);
+  }
+  for (const std::size_t i : fresh) {
+    if (!verified) least = std::min(least, discrete_[i].action);
+  }
+  std::vector<std::size_t> next;
+  std::vector<std::size_t> rest;
+  for (const std::size_t i : fresh) {
+    const bool clearly_more = discrete_[i].action - least > kClearly * std::abs(least);
+    (clearly_more ? rest : next).push_back(i);
+  }
+  fresh = rest;
+  if (!next.empty()) return next;
+  for (const std::size_t i : std::exchange(fresh, {})) {
+    discrete_[i].extremal = kTooLong;
+    converged_ += discrete_[i].pending_hits;
+  }
+  return next;
+}
+
 Search::Polished Search::absorb(const std::vector<Candidate>& candidates) {
   starts_ += static_cast<int>(candidates.size());
   // In the order of the starts, so that the list does not depend on the threads.
-  std::vector<const Path*> fresh;
-  std::vector<std::size_t> fresh_index;
+  std::vector<std::size_t> fresh;
   for (const Candidate& candidate : candidates) {
     if (candidate.residual < least_residual_) least_residual_ = candidate.residual;
     if (!candidate.found) continue;
     const std::size_t known = find_discrete(candidate.path);
     if (known < discrete_.size()) {
       const int extremal = discrete_[known].extremal;
-      if (extremal >= 0) ++hits_[root(extremal)], ++converged_;
-      if (extremal == kPending) ++discrete_[known].pending_hits;
+      if (extremal >= 0) ++hits_[root(extremal)];
+      if (extremal >= 0 || extremal == kTooLong) ++converged_;
+      if (extremal == kPending || extremal == kTooLong) ++discrete_[known].pending_hits;
       continue;
     }
     const double h = problem_.time / candidate.path.intervals;
     discrete_.push_back({candidate.path, discrete_action(problem_.segment, h, candidate.path)});
-    fresh.push_back(&candidate.path);
-    fresh_index.push_back(known);
+    fresh.push_back(known);
   }
   Polished tally;
-  std::vector<std::optional<Extremal>> polished(fresh.size());
-  parallel_for(static_cast<int>(fresh.size()), threads_, [&](int i) {
-    polished[i] = polish(problem_, options_, *fresh[i]);
-  });
-  for (std::size_t i = 0; i < fresh.size(); ++i) {
-    const int index = add(polished[i]);
-    discrete_[fresh_index[i]].extremal = index;
-    ++(index < 0 ? tally.failed : tally.good);
-    if (index < 0) continue;
-    hits_[root(index)] += discrete_[fresh_index[i]].pending_hits;
-    converged_ += discrete_[fresh_index[i]].pending_hits;
+  for (auto next = next_to_polish(fresh); !next.empty(); next = next_to_polish(fresh)) {
+    std::vector<std::optional<Extremal>> polished(next.size());
+    parallel_for(static_cast<int>(next.size()), threads_, [&](int i) {
+      polished[i] = polish(problem_, options_, discrete_[next[i]].path);
+    });
+    for (std::size_t i = 0; i < next.size(); ++i) {
+      Discrete& discrete = discrete_[next[i]];
+      discrete.extremal = add(polished[i]);
+      ++(discrete.extremal < 0 ? tally.failed : tally.good);
+      if (discrete.extremal < 0) continue;
+      hits_[root(discrete.extremal)] += discrete.pending_hits;
+      converged_ += discrete.pending_hits;
+    }
   }
   return tally;
 }

@@ -46,6 +46,7 @@ class Search {
  private:
   static constexpr int kNone = -1;
   static constexpr int kPending = -2;
+  static constexpr int kTooLong = -3;
 
   // A relaxed path that satisfies the discrete equations.
   struct Candidate {
@@ -60,7 +61,9 @@ class Search {
   [[nodiscard]] bool lacks() const;
   // The search for one geodesic ends when the least action has been hit often enough, and the more
   // often the more rivals it has; not while the best extremal is past a conjugate time, since then
-  // a nearby path is better. A search for more goes on to the limit.
+  // a nearby path is better. It ends after the first round already where most starts converge, most
+  // of them to one extremal, and nothing comes near its action. A search for more goes on to the
+  // limit.
   [[nodiscard]] bool settled();
   void relax_round(int count);
   // The same from momenta, where there is no transcription.
@@ -74,6 +77,9 @@ class Search {
   };
   // Polishes what is new among the candidates and adds it to the list.
   Polished absorb(const std::vector<Candidate>& candidates);
+  // Those of discrete_ that are worth polishing next, of the pending ones `fresh`; the others wait
+  // or, where only the least action is wanted and theirs is clearly more, are given up.
+  std::vector<std::size_t> next_to_polish(std::vector<std::size_t>& fresh);
   [[nodiscard]] Candidate relax_start(int i) const;
   [[nodiscard]] std::size_t best() const;
   // Adds what is new, and its mirror partners. Returns the index in the list, or -1.
@@ -92,8 +98,8 @@ class Search {
   struct Discrete {
     Path path;
     double action = 0;
-    int extremal = kPending;  // the one it became, kNone or kPending,
-    int pending_hits = 1;     // and how often it was seen before that was known
+    int extremal = kPending;  // the one it became, kNone, kPending or kTooLong,
+    int pending_hits = 1;     // and how often it was seen before it became one
   };
 
   const BoundaryValueProblem& problem_;
