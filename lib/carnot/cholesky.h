@@ -40,15 +40,17 @@ template <class T, int n>
 template <class T, int n>
 class Cholesky {
  public:
-  // Factors the lower triangle of `a`. Cost about n^3 / 6 multiplications, n divisions. Two by two
-  // it is Cramer's rule, which is forward stable and has one division in place of two in a row.
+  // Factors the lower triangle of `a`. Cost about n^3 / 6 multiplications, n divisions. Two by two,
+  // the second pivot is written as determinant over a_00, so that no division waits for another.
   explicit Cholesky(const Matrix<T, n, n>& a) : lower_(a) {
     if constexpr (n == 2) {
       const T product = a(0, 0) * a(1, 1);
       const T determinant = product - a(1, 0) * a(1, 0);
       positive_ =
           all(a(0, 0) > constant<T>(0)) && all(determinant > constant<T>(kThreshold) * product);
-      inverses_[0] = constant<T>(1) / determinant;
+      inverses_[1] = a(0, 0) / determinant;
+      inverses_[0] = constant<T>(1) / a(0, 0);
+      lower_(1, 0) = a(1, 0) * inverses_[0];
     } else {
       Vector<T, n> pivots;
       positive_ = cholesky_factor(a, lower_, pivots);
@@ -60,20 +62,15 @@ class Cholesky {
   [[nodiscard]] bool positive() const { return positive_; }
 
   [[nodiscard]] Vector<T, n> solve(const Vector<T, n>& b) const {
-    if constexpr (n == 2) {
-      return {(lower_(1, 1) * b[0] - lower_(1, 0) * b[1]) * inverses_[0],
-              (lower_(0, 0) * b[1] - lower_(1, 0) * b[0]) * inverses_[0]};
-    } else {
-      Vector<T, n> x = b;
-      for (int i = 1; i < n; ++i) {
-        for (int k = 0; k < i; ++k) x[i] -= lower_(i, k) * x[k];
-      }
-      for (int i = 0; i < n; ++i) x[i] *= inverses_[i];
-      for (int i = n - 2; i >= 0; --i) {
-        for (int k = i + 1; k < n; ++k) x[i] -= lower_(k, i) * x[k];
-      }
-      return x;
+    Vector<T, n> x = b;
+    for (int i = 1; i < n; ++i) {
+      for (int k = 0; k < i; ++k) x[i] -= lower_(i, k) * x[k];
     }
+    for (int i = 0; i < n; ++i) x[i] *= inverses_[i];
+    for (int i = n - 2; i >= 0; --i) {
+      for (int k = i + 1; k < n; ++k) x[i] -= lower_(k, i) * x[k];
+    }
+    return x;
   }
 
  private:
