@@ -12,6 +12,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 
 #include "carnot/runge_kutta.h"
 
@@ -29,11 +30,14 @@ class Tangent {
   // singular or its solution not finite; M is then unchanged.
   [[nodiscard]] bool advance(const Step& step, Compensated<Square>& m) {
     const T h = step.last_step();
-    const bool repeated = last_step_ == h;
-    last_step_ = T(0);
+    const T in_packs_before = std::exchange(packed_step_, T(0));
+    const T plain_before = std::exchange(plain_step_, T(0));
     count_ = step.tableau().stages();
     Square sum;
-    if (!in_packs(step, repeated, m, sum)) {
+    if (in_packs(step, h != T(0) && in_packs_before == h, m, sum)) {
+      packed_step_ = h;
+    } else {
+      const bool repeated = h != T(0) && plain_before == h;
       if (!linearize(step)) return false;
       const bool coupled = step.tableau().coupling == Coupling::kFull;
       if (!(coupled ? iterate(step, repeated, m) || solve(step, m) : solve_in_turn(step, m))) {
@@ -43,7 +47,7 @@ class Tangent {
       for (int i = 1; i < count_; ++i) sum += step.tableau().update[i] * increment_[i];
     }
     if (!sum.allFinite()) return false;
-    last_step_ = h;
+    if (packed_step_ == T(0)) plain_step_ = h;
     m.add(sum);
     return true;
   }
@@ -100,7 +104,7 @@ class Tangent {
       const Vector<T, kSize* kSize> total =
           Eigen::Map<const Rows>(tangents_.data()).rowwise().sum();
       sum = Eigen::Map<const Square>(total.data());
-      return true;
+      return sum.allFinite();
     }
   }
 
@@ -154,7 +158,8 @@ class Tangent {
         for (int j = 0; j < count_; ++j) add_stage(step, i, j, last_[j], argument);
         argument += m.value;
         increment_[i] = jacobian_[i].lazyProduct(argument);
-        change = std::max(change, (increment_[i] - last_[i]).cwiseAbs().maxCoeff());
+        const T moved = (increment_[i] - last_[i]).cwiseAbs().maxCoeff();
+        if (!(moved <= change)) change = moved;  // NaN, too
       }
       return change;
     });
@@ -217,7 +222,9 @@ class Tangent {
   }
 
   int count_ = 0;
-  T last_step_ = T(0);
+  // Lengths of the step whose increments are there, side by side or one by one; 0: none.
+  T packed_step_ = T(0);
+  T plain_step_ = T(0);
   // Scratch of the linear solves.
   std::array<T, kSize * Step::kMaxCoupled * kSize * Step::kMaxCoupled> matrix_;
   std::array<T, kSize * Step::kMaxCoupled * kSize> rhs_;
