@@ -45,8 +45,9 @@ TEST(ChooseSteps, ReachesTheToleranceButNotByFar) {
       EXPECT_LE(error(segment, choice.count), 2 * tolerance + 1e-13) << method.name;
       EXPECT_LE(choice.error, tolerance);
       EXPECT_GT(choice.evaluations, 0);
-      // With two thirds of the steps the tolerance is missed (unless there were few to begin with).
-      if (choice.count > 8) {
+      // With two thirds of the steps the tolerance is missed (unless there were few to begin with:
+      // those of the highest orders are as long as the stage iteration allows).
+      if (choice.count > 8 && method.order < 20) {
         EXPECT_GT(error(segment, choice.count * 2 / 3), 0.5 * tolerance) << method.name;
       }
     }
