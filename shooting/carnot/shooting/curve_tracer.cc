@@ -49,7 +49,9 @@ std::optional<Knots> split(const BoundaryValueProblem& problem, const Knots& kno
 }  // namespace
 
 Place CurveTracer::place_of(const VectorXd& x) const {
-  return {equations_->knots(x), std::clamp(x[x.size() - 1], 0.0, 1.0)};
+  constexpr double kRoundOff = 1e-14;  // the corrector may move the first point by so much
+  const double s = x[x.size() - 1];
+  return {equations_->knots(x), s < kRoundOff ? 0.0 : std::min(s, 1.0)};
 }
 
 bool CurveTracer::set_up(Place place, const VectorXd& along) {
