@@ -40,7 +40,7 @@ broken() {
   adapter=shooting/carnot/shooting/ompl_state_space.h
   [ ! -f $adapter ] || only "$std|$ompl|$shooting" $adapter
   only "$std|$posix|$eigen|gnuplot-iostream\.h|$core|carnot/plots/[a-z0-9_]+\.h" plots
-  own=$(find apps -name '*.h' | sed 's:^apps/::; s:\.:\\.:' | tr '\n' '|')
+  own=$(find apps -name '*.h' | sed -E 's:^apps/::; s:\.:\\.:; s:^(.*)/:(\1/)?:' | tr '\n' '|')
   libraries='CLI/[A-Za-z]+\.hpp|nlohmann/[a-z_]+\.hpp|fmt/[a-z]+\.h'
   quad='boost/multiprecision/(eigen|float128)\.hpp'
   only "$std|$posix|$eigen|$libraries|$quad|${own}version\.h|carnot/[a-z0-9_/]+\.h" \
@@ -48,9 +48,8 @@ broken() {
   peers='boost/numeric/odeint/[a-z0-9_/]+\.hpp|gsl/[a-z0-9_]+\.h|benchmark/benchmark\.h'
   peers="$peers|(cvode|ida|nvector|sundials|sunlinsol|sunmatrix|sunnonlinsol)/[a-z_]+\.h"
   peers="$peers|coin/Ip[A-Za-z]+\.hpp"
-  for folder in apps/peers apps/micro; do
-    [ ! -d $folder ] || only "$std|$peers|${own}$shooting|$scenes" $folder
-  done
+  [ ! -d apps/peers ] || only "$std|$peers|${own}$shooting|$scenes" apps/peers
+  [ ! -d apps/micro ] || only "$std|$peers|fmt/[a-z]+\.h|${own}$shooting|$scenes" apps/micro
   [ ! -d apps/ompl ] || only "$std|$ompl|$shooting|$scenes|carnot/plots/[a-z_]+\.h" apps/ompl
   umbrellas lib shooting plots
 }

@@ -10,8 +10,8 @@
 // A state is a point of R^k and, with SteeringOptions::mod_angles, an SO(2) for each coordinate
 // with a period; R^k holds the others.
 // Paths are geodesics (SteeringStateSpace::interpolate), and the cost of a motion is their length
-// (SteeringObjective). A new pair of states costs a search of 5 to 50 ms, so planners must not ask
-// for it where they look for neighbours: distance() is the straight line with angles weighed by
+// (SteeringObjective). A new pair of states costs a search of 10 to 200 ms, so planners must not
+// ask for it where they look for neighbours: distance() is the straight line with angles weighed by
 // `radian`, which takes nanoseconds, unless Nearness::kGeodesic is chosen. RRT* then searches for
 // about 4 log(n) + 1 geodesics per sample, SteeringOptions::starts = 2 makes these quicker.
 #pragma once

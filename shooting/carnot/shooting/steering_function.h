@@ -12,7 +12,7 @@
 // of their coordinates count as equal. On a cut locus two ways are equally long: the distance is
 // continuous there, the path is not.
 //
-// Cost: a new question is a search (geodesic.h), some 5 to 50 ms, in proportion to
+// Cost: a new question is a search (geodesic.h), some 10 to 200 ms, in proportion to
 // SteeringOptions::starts and to the images of the target with `mod_angles`. Answers are kept: the
 // same question again takes about 1 us, a point of its path a step or two of the method more, and
 // neither allocates. All calls may come from many threads at once; the answer is the same whatever
