@@ -103,7 +103,9 @@ StepChoice choose_steps(const Segment& segment,
                         double tolerance,
                         const Progress& progress) {
   StepChoice choice;
-  if (segment.has_automatic_flow()) {
+  // Of lower or higher orders the trial's runs are up to twice as fine as needed.
+  constexpr int kOrderOfTrials = 16;
+  if (segment.has_automatic_flow() && segment.order == kOrderOfTrials) {
     std::vector<double> end = z;
     const AutomaticFlow run = segment.automatic_flow(start, duration, tolerance, end.data());
     choice.evaluations += run.evaluations;

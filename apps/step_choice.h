@@ -1,5 +1,5 @@
-// Steps for a wanted error: by the Segment's own trial where it has one (automatic_flow.h), else
-// doubling tells the error and the order tells the steps.
+// Steps for a wanted error: of gauss16 by the Segment's own trial (automatic_flow.h), else doubling
+// tells the error and the order tells the steps.
 //
 // With N and 2N steps of a method of order r the end points differ by e = |z_N - z_2N|, and since
 // the error falls like N^-r, that of N is e / (1 - 2^-r). If it is not small enough, the next N is
