@@ -99,6 +99,10 @@ concept IndexOneSystem = requires(const S& system,
 template <class S>
 concept IsTimeDependent = S::kTimeDependent;
 
+// A scene may say `kScalarOnly = true`: its formulas branch on values (pack.h).
+template <class S>
+concept IsScalarOnly = S::kScalarOnly;
+
 template <class S>
 concept HasRegularity = requires(const S& system,
                                  const Vector<double, S::kDof>& q,

@@ -38,6 +38,8 @@ class OptimalControl {
   static constexpr int kAlgebraic = kControls;
   static constexpr int kMultipliers = 0;
   static constexpr bool kAutonomous = !IsTimeDependent<Scene>;
+  // rate() runs on packs: no iteration.
+  static constexpr bool kPacks = HasLinearControls<Scene> && !IsScalarOnly<Scene>;
   // f = F u and l = u'R u/2: lengths are those of a sub-Riemannian metric.
   static constexpr bool kMetric =
       HasLinearControls<Scene> && !HasDrift<Scene> && !HasStateCost<Scene>;

@@ -12,7 +12,8 @@
 // last step, or from the stage before. It goes on while for some component the largest change over
 // the stages is still falling (Antonana, Makazaga & Murua 2017), so it ends at round-off whatever
 // the scale of the components; or, where a run is asked for a tolerance, until no stage changes by
-// more than stop_at(). If that is not reached, Newton's method takes over.
+// more than stop_at(). If that is not reached, or slowly, Newton's method takes over
+// (stage_newton.h).
 //
 // Rates of coupled stages are evaluated side by side in packs where the system allows it, and one
 // by one where one of them fails, which tells the reason.
@@ -28,6 +29,7 @@
 #include "carnot/packed_stages.h"
 #include "carnot/phase_space.h"
 #include "carnot/stage_equations.h"
+#include "carnot/stage_newton.h"
 #include "carnot/stopping_rule.h"
 #include "carnot/tableau.h"
 
@@ -120,8 +122,8 @@ class RungeKutta {
   [[nodiscard]] T last_step() const { return last_step_; }
 
  private:
+  friend class StageNewton<T, kSize, kMaxCoupled>;
   static constexpr int kMaxIterations = 100;
-  static constexpr int kMaxNewton = 20;
 
   // Stages that are found together: `count` from `first` on, of the step of h from z at t. They
   // depend on each other and on those before.
@@ -165,8 +167,7 @@ class RungeKutta {
       if (report.status == StepStatus::kOk) report.status = StepStatus::kStagesDiverged;
       return;
     }
-    report.status = StepStatus::kOk;
-    if (predict(block, false, report)) newton(block, report);
+    newton(block, report);
   }
 
   // U of the block from the increments.
@@ -195,7 +196,7 @@ class RungeKutta {
 
   // The same for all stages of the block.
   bool evaluate_all(const Block& block, StepReport& report) {
-    if constexpr (kPacks && !kRows) {
+    if constexpr (kPacks) {
       if (block.end() - block.begin() > 1) {
         if (evaluate_packs(block, report)) return true;
         if (!with_newton_) return fail(RateStatus::kNotFinite, report);
@@ -307,6 +308,14 @@ class RungeKutta {
     return stop_ > T(0) ? iterate_to_tolerance(block, report) : iterate_to_round_off(block, report);
   }
 
+  // By the changes of two iterations: so slowly that Newton's method is faster.
+  bool contracts_poorly(int iteration, T change) {
+    constexpr int kJudged = 12;
+    constexpr T kPoor = T(0.02);  // 0.7 an iteration
+    if (iteration == 1) first_change_ = change;
+    return with_newton_ && iteration == kJudged && !(change <= kPoor * first_change_);
+  }
+
   bool iterate_to_tolerance(const Block& block, StepReport& report) {
     constexpr T kRunsAway = 4;  // changes that grow by this are not going to settle
     Stages next = stages_;
@@ -316,6 +325,7 @@ class RungeKutta {
       if (!(change <= limit)) return false;
       if (change <= stop_) return true;
       if (iteration == 1) limit = kRunsAway * change;
+      if (contracts_poorly(iteration, change)) return false;
     }
     return false;
   }
@@ -326,7 +336,8 @@ class RungeKutta {
     Stages next = stages_;
     Point change;
     for (int iteration = 0; iteration < most_iterations_; ++iteration) {
-      if (!(sweep(block, next, &change, report) >= T(0))) return false;
+      const T most = sweep(block, next, &change, report);
+      if (!(most >= T(0)) || contracts_poorly(iteration, most)) return false;
       const auto verdict = rule(change);
       if (verdict == Rule::Verdict::kAtRest) return true;
       if (verdict == Rule::Verdict::kStalled) return settled(block, change);
@@ -342,44 +353,11 @@ class RungeKutta {
     return (change.array() < limit).all();  // false for a NaN and for infinite stages
   }
 
-  // Solves U_i - z - e - sum_j mu_ij h omega_j f(U_j) = 0 for the stages of the block at once.
   void newton(const Block& block, StepReport& report) {
     report.newton = true;
-    T smallest = std::numeric_limits<T>::max();
-    set_stages(block, stages_);
-    Stages next = stages_;
-    for (int iteration = 0; iteration < kMaxNewton; ++iteration) {
-      if (!newton_matrix(block, report)) return;
-      set_stages(block, next);
-      // The residual, then its solution, stage by stage as the rows of the matrix.
-      Eigen::Matrix<T, kSize, s, Eigen::ColMajor, kSize, kMaxStages> correction =
-          block.of(next) - block.of(stages_);
-      if (!newton_.solve(static_cast<int>(correction.cols()), correction.data())) break;
-      block.of(stages_) += correction;
-      if (!correction.allFinite()) break;
-      const T change = correction.cwiseAbs().maxCoeff();
-      const bool stalled = change >= smallest;
-      smallest = std::min(smallest, change);
-      if (change == T(0) || (stalled && settled(block, Point::Constant(change)))) {
-        (void)evaluate_all(block, report);
-        return;
-      }
-    }
+    if (coupled() && newton_.simplified(*this, block, report)) return;
+    if (newton_.full(*this, block, report) || report.status != StepStatus::kOk) return;
     report.status = StepStatus::kStagesDiverged;
-  }
-
-  // The rates at the stages, and the matrix of their linearized equations.
-  bool newton_matrix(const Block& block, StepReport& report) {
-    for (int j = block.begin(); j < block.end(); ++j) {
-      if (!evaluate(block, j, report)) return false;
-      const T time = block.t + tableau_.c[j] * block.h;
-      Matrix<T, kSize, kSize> a;
-      const RateStatus rate = phase_jacobian(system_, time, Point(stages_.col(j)), algebraic(j), a);
-      if (rate != RateStatus::kOk) return fail(rate, report);
-      a *= block.h * tableau_.omega[j];
-      newton_.set_column(tableau_, block.begin(), block.end(), j, a);
-    }
-    return true;
   }
 
   const System& system_;
@@ -390,11 +368,12 @@ class RungeKutta {
   alignas(64) StageRows<T, System::kAlgebraic, s, kMaxStages> algebraic_;
   Algebraic branch_;
   T stop_ = T(0);
+  T first_change_ = T(0);
   int most_iterations_ = kMaxIterations;
   bool with_newton_ = true;
   T start_time_ = T(0);
   T last_step_ = T(0);
-  StageEquations<T, kSize, kMaxCoupled> newton_;  // scratch
+  StageNewton<T, kSize, kMaxCoupled> newton_;
 };
 
 }  // namespace carnot

@@ -46,10 +46,6 @@ concept HasFrameMass = HasFrame<S> && requires(const S& scene, const Vector<doub
     } -> std::convertible_to<Matrix<double, S::kDof - S::kMultipliers, S::kDof - S::kMultipliers>>;
 };
 
-// The scene says `kScalarOnly = true`: its formulas branch on values (pack.h).
-template <class S>
-concept IsScalarOnly = S::kScalarOnly;
-
 // h(q) = 0, kHolonomic (l) of them, besides the velocity constraints.
 template <class S>
 concept HasHolonomic = requires(const S& scene, const Vector<double, S::kDof>& q) {
