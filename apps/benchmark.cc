@@ -1,5 +1,6 @@
 // carnot benchmark: speed against error on three trajectories whose ends are known to many digits;
-// with --boundary-value, solvers of boundary-value problems from blind starts.
+// with --boundary-value, solvers of boundary-value problems from blind starts; with --energy, H in
+// long runs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 
 #include "benchmark_boundary_report.h"
 #include "benchmark_cache.h"
+#include "benchmark_energy_report.h"
 #include "benchmark_report.h"
 #include "benchmark_rows.h"
 #include "carnot/plots/plot_file.h"
@@ -60,6 +62,11 @@ independent integration. With --peers also ipopt on the direct midpoint transcri
 and gsl-hybridsj on single shooting. Then, over 1, 2, 4, ... 64 starts, the share of --targets random
 targets that are at the least action: --plot draws that. Takes some minutes.
 
+With --energy: the largest |H - H0| on the vehicle over T = 1000 against the CPU time of the run, by
+Gauss methods with steps around 0.2, whose stages are iterated to round-off or to changes of 1e-13,
+by dop853-adaptive and, with --peers, by gsl-rk8pd and odeint-rkf78; and how the round-off in H
+grows over --steps steps of gauss16, with compensated summation and without.
+
 Times are the median CPU time of one trajectory over blocks, in rounds through all the rows of a
 scene, so that times within one run compare.
 
@@ -68,14 +75,21 @@ Examples
   carnot benchmark vehicle --json
   carnot benchmark --plot speed.png --output speed.md
   carnot benchmark --boundary-value --starts 32 --output solvers.md
+  carnot benchmark --energy --steps 10000000 --plot energy.png
 
 Exit status: 0 success, 1 a file or reference did not come about, 2 bad input, 130 interrupted.)";
+
+constexpr long kMostThreads = 1024;
+constexpr long kFewSteps = 1000;
+constexpr long kMostSteps = 1000000000;
 
 struct Options {
   std::vector<std::string> scenes;
   bool peers = false;
   bool quick = false;
   bool boundary_value = false;
+  bool energy = false;
+  std::string steps;
   std::string starts;
   std::string targets;
   std::string seed;
@@ -160,10 +174,6 @@ std::vector<BenchmarkScene> run_scenes(const std::vector<BenchmarkTrajectory>& t
 
 BoundaryOptions check_boundary(const Options& options) {
   constexpr long kMost = 100000;
-  constexpr long kMostThreads = 1024;
-  if (!options.scenes.empty()) {
-    refuse("SCENE", options.scenes[0], "given besides --boundary-value", "no SCENE");
-  }
   BoundaryOptions checked;
   if (options.quick) checked.starts = checked.targets = 2;
   const auto set = [](const char* name, const std::string& text, long most, int& value) {
@@ -176,20 +186,62 @@ BoundaryOptions check_boundary(const Options& options) {
   return checked;
 }
 
-// Options that only --boundary-value knows.
-void check_no_boundary(const Options& options) {
-  for (const auto& [name, text] : {std::pair{"--starts", options.starts},
-                                   {"--targets", options.targets},
-                                   {"--seed", options.seed},
-                                   {"--threads", options.threads}}) {
-    if (!text.empty()) refuse(name, text, "without --boundary-value", "only with it");
+// Options that only the other benchmarks know: those of `flag`, where it was not given.
+void check_absent(const char* flag,
+                  std::initializer_list<std::pair<const char*, std::string>> options) {
+  for (const auto& [name, text] : options) {
+    if (!text.empty()) refuse(name, text, std::string("without ") + flag, "only with it");
   }
 }
 
-int run_boundary(const Options& options, const std::vector<std::string>& arguments) {
-  const auto begin = std::chrono::steady_clock::now();
+void check_options(const Options& options) {
+  const bool several = options.boundary_value && options.energy;
+  if (several) refuse("--energy", "", "given besides --boundary-value", "one of the two");
+  if ((options.boundary_value || options.energy) && !options.scenes.empty()) {
+    refuse("SCENE",
+           options.scenes[0],
+           options.energy ? "given besides --energy" : "given besides --boundary-value",
+           "no SCENE");
+  }
+  if (!options.energy) check_absent("--energy", {{"--steps", options.steps}});
+  if (!options.boundary_value) {
+    check_absent(
+        "--boundary-value",
+        {{"--starts", options.starts}, {"--targets", options.targets}, {"--seed", options.seed}});
+  }
+  if (!options.boundary_value && !options.energy) {
+    check_absent("--boundary-value or --energy", {{"--threads", options.threads}});
+  }
   check_peers(options.peers);
   check_destination(options.destination);
+}
+
+// What all of them tell. `failure`: why nothing was measured, else empty.
+Result result_of(const std::vector<std::string>& arguments, const std::string& failure) {
+  Result result;
+  result.delivered = failure.empty();
+  result.message = failure;
+  result.json = result_head(arguments);
+  result.json["status"] = result.delivered ? "completed" : "failed";
+  result.json["message"] = failure;
+  result.json["processor"] = processor_name();
+  result.json["compiler"] = __VERSION__;
+  return result;
+}
+
+class Stopwatch {
+ public:
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(Clock::now() - begin_).count();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point begin_ = Clock::now();
+};
+
+int run_boundary(const Options& options, const std::vector<std::string>& arguments) {
+  const Stopwatch watch;
   const BoundaryOptions checked = check_boundary(options);
   std::vector<BoundarySolver> solvers = own_boundary_solvers();
   if (options.peers) {
@@ -200,53 +252,84 @@ int run_boundary(const Options& options, const std::vector<std::string>& argumen
     ProgressBar bar("%", 100, options.destination.quiet);
     found = run_boundary_benchmark(checked, solvers, bar.callback());
   }
-  Result result;
-  result.delivered = found.has_value();
-  if (!found) result.message = "stopped";
+  Result result = result_of(arguments, found ? "" : "stopped");
   const BoundaryResult measured = found.value_or(BoundaryResult{});
-  result.json = result_head(arguments);
-  result.json["status"] = result.delivered ? "completed" : "failed";
-  result.json["message"] = result.message;
-  result.json["processor"] = processor_name();
-  result.json["compiler"] = __VERSION__;
   result.json["seed"] = checked.seed;
   add_boundary_json(measured, result.json);
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
-  result.json["elapsed_seconds"] = elapsed.count();
+  result.json["elapsed_seconds"] = watch.seconds();
   result.text = [&] { return boundary_text(measured); };
   result.draw = [&](const std::string& file) { return draw_boundary(file, measured); };
   result.csv = [&] { return boundary_markdown(measured, arguments); };
   return deliver(result, options.destination);
 }
 
-int run_benchmark(const Options& options, const std::vector<std::string>& arguments) {
-  if (options.boundary_value) return run_boundary(options, arguments);
-  check_no_boundary(options);
-  const auto clock = [] { return std::chrono::steady_clock::now(); };
-  const auto begin = clock();
-  check_peers(options.peers);
-  check_destination(options.destination);
+EnergyOptions check_energy(const Options& options) {
+  EnergyOptions checked;
+  checked.quick = options.quick;
+  if (options.quick) checked.steps = kFewSteps;
+  if (!options.steps.empty()) {
+    checked.steps = parse_integer("--steps", options.steps, kFewSteps, kMostSteps);
+  }
+  if (!options.threads.empty()) {
+    checked.threads =
+        static_cast<int>(parse_integer("--threads", options.threads, 1, kMostThreads));
+  }
+  return checked;
+}
+
+// Those of other libraries that reach drifts worth comparing.
+std::vector<Contestant> energy_peers(const EnergyOptions& options) {
+  std::vector<Contestant> all = peer_contestants(energy_problem(), {options.quick});
+  std::erase_if(all, [](const Contestant& peer) {
+    return peer.method != "gsl-rk8pd" && peer.method != "odeint-rkf78";
+  });
+  return all;
+}
+
+int run_energy(const Options& options, const std::vector<std::string>& arguments) {
+  const Stopwatch watch;
+  const EnergyOptions checked = check_energy(options);
+  std::optional<EnergyResult> found;
+  {
+    ProgressBar bar("%", 100, options.destination.quiet);
+    const auto peers = options.peers ? energy_peers(checked) : std::vector<Contestant>{};
+    found = run_energy(checked, peers, bar.callback());
+  }
+  Result result = result_of(arguments, found ? "" : "stopped");
+  const EnergyResult measured = found.value_or(EnergyResult{});
+  add_energy_json(measured, result.json);
+  result.json["elapsed_seconds"] = watch.seconds();
+  result.text = [&] { return energy_text(measured); };
+  result.draw = [&](const std::string& file) { return draw_energy(file, measured); };
+  result.csv = [&] { return energy_markdown(measured, arguments); };
+  return deliver(result, options.destination);
+}
+
+int run_trajectories(const Options& options, const std::vector<std::string>& arguments) {
+  const Stopwatch watch;
   const auto trajectories = check_scenes(options.scenes);
   std::vector<BenchmarkScene> scenes;
-  Result result;
+  std::string failure;
   try {
     ProgressBar bar("scenes", static_cast<double>(trajectories.size()), options.destination.quiet);
     scenes = run_scenes(trajectories, options, bar.callback());
   } catch (const std::runtime_error& error) {
-    result.delivered = false;
-    result.message = error.what();
+    failure = error.what();
   }
-  result.json = result_head(arguments);
-  result.json["status"] = result.delivered ? "completed" : "failed";
-  result.json["message"] = result.message;
-  result.json["processor"] = processor_name();
-  result.json["compiler"] = __VERSION__;
+  Result result = result_of(arguments, failure);
   add_benchmark_json(scenes, result.json);
-  result.json["elapsed_seconds"] = std::chrono::duration<double>(clock() - begin).count();
+  result.json["elapsed_seconds"] = watch.seconds();
   result.text = [&] { return benchmark_text(scenes); };
   result.draw = [&](const std::string& file) { return draw_benchmark(file, scenes); };
   result.csv = [&] { return benchmark_markdown(scenes, arguments); };
   return deliver(result, options.destination);
+}
+
+int run_benchmark(const Options& options, const std::vector<std::string>& arguments) {
+  check_options(options);
+  if (options.boundary_value) return run_boundary(options, arguments);
+  if (options.energy) return run_energy(options, arguments);
+  return run_trajectories(options, arguments);
 }
 
 }  // namespace
@@ -262,11 +345,13 @@ void add_benchmark(CLI::App& app, Invocation& invocation) {
   benchmark.add_flag("--boundary-value",
                      options->boundary_value,
                      "compare solvers of boundary-value problems instead");
+  benchmark.add_flag("--energy", options->energy, "measure H in long runs instead");
   const auto add = [&](const char* name, std::string& value, const char* help) {
     benchmark.add_option(name, value, help)->type_name("N");
   };
   add("--starts", options->starts, "blind starts of each solver (64)");
   add("--targets", options->targets, "random targets of the curve over starts (20)");
+  add("--steps", options->steps, "longest run of --energy (1000000)");
   add("--seed", options->seed, "fixes starts and targets (0)");
   add("--threads", options->threads, "threads; the answer does not depend on it (all)");
   Destination& destination = options->destination;

@@ -4,10 +4,9 @@
 
 #include <algorithm>
 
-#include "benchmark_clock.h"
+#include "benchmark_report.h"
 #include "carnot/plots/series_plot.h"
 #include "text_table.h"
-#include "version.h"
 
 namespace carnot::apps {
 namespace {
@@ -136,12 +135,8 @@ std::string boundary_text(const BoundaryResult& result) {
 
 std::string boundary_markdown(const BoundaryResult& result,
                               const std::vector<std::string>& arguments) {
-  std::string text = fmt::format("# carnot {}\n\ncarnot {}, {}, g++ {}\n\n{}\n",
-                                 fmt::join(arguments, " "),
-                                 kVersion,
-                                 processor_name(),
-                                 __VERSION__,
-                                 explanation(has_grids(result)));
+  std::string text =
+      fmt::format("{}\n{}\n", markdown_head(arguments), explanation(has_grids(result)));
   for (const BoundaryProblemEntry& problem : result.problems) {
     text += fmt::format("\n## {}\n\n{}.\n\n{}",
                         problem.scene,

@@ -60,6 +60,12 @@ BenchmarkProblem benchmark_problem(const BenchmarkTrajectory& trajectory);
 std::vector<Contestant> own_contestants(const BenchmarkProblem& problem,
                                         const BenchmarkLadder& ladder);
 
+// Gauss methods by steps, for long runs: to round-off, and ended where stages change by less than
+// kLongStop.
+std::vector<Contestant> energy_contestants(const BenchmarkProblem& problem,
+                                           const BenchmarkLadder& ladder);
+inline constexpr double kLongStop = 1e-13;
+
 // DOP853 with a choice of steps and a right-hand side by hand.
 std::vector<Contestant> contrast_contestants(const BenchmarkProblem& problem,
                                              const BenchmarkLadder& ladder);

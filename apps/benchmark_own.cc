@@ -57,8 +57,13 @@ BenchmarkWatch watch_plan(const Segment& segment, const StepPlan& plan, std::vec
   return {summary.energy_drift, std::string(summary.report.reason())};
 }
 
-Contestant by_steps(const Segment& segment, const BenchmarkProblem& problem, long count) {
-  const StepPlan plan = StepPlan::equal(0, problem.trajectory.duration, count);
+// stop: of the stage iteration, see StepPlan.
+Contestant by_steps(const Segment& segment,
+                    const BenchmarkProblem& problem,
+                    long count,
+                    double stop = 0) {
+  StepPlan plan = StepPlan::equal(0, problem.trajectory.duration, count);
+  plan.stop = stop;
   Contestant contestant;
   contestant.method = segment.method;
   contestant.step_or_tolerance = plan.step;
@@ -214,6 +219,25 @@ BenchmarkProblem benchmark_problem(const BenchmarkTrajectory& trajectory) {
     return segment.evaluate(0, z, z + segment.dof, q_dot.data(), lambda.data()).hamiltonian;
   };
   return problem;
+}
+
+std::vector<Contestant> energy_contestants(const BenchmarkProblem& problem,
+                                           const BenchmarkLadder& ladder) {
+  constexpr double kShortest = 0.1;
+  constexpr double kLongest = 0.45;
+  const double factor = ladder.quick ? 4 : std::sqrt(kRootTwo);
+  std::vector<Contestant> all;
+  for (const char* method : {kDefault, "gauss12"}) {
+    const Segment segment = find_scene(problem.trajectory.scene).make({}, method);
+    for (const double stop : {0.0, kLongStop}) {
+      for (double h = kShortest; h < kLongest; h *= factor) {
+        const long count = std::lround(problem.trajectory.duration / h);
+        all.push_back(by_steps(segment, problem, count, stop));
+        if (stop > 0) all.back().method += fmt::format(", stages to {:.0e}", stop);
+      }
+    }
+  }
+  return all;
 }
 
 std::vector<Contestant> own_contestants(const BenchmarkProblem& problem,

@@ -168,14 +168,17 @@ std::string benchmark_text(const std::vector<BenchmarkScene>& scenes) {
   return text + explanation() + "\n";
 }
 
+std::string markdown_head(const std::vector<std::string>& arguments) {
+  return fmt::format("# carnot {}\n\ncarnot {}, {}, g++ {}\n",
+                     fmt::join(arguments, " "),
+                     kVersion,
+                     processor_name(),
+                     __VERSION__);
+}
+
 std::string benchmark_markdown(const std::vector<BenchmarkScene>& scenes,
                                const std::vector<std::string>& arguments) {
-  std::string text = fmt::format("# carnot {}\n\ncarnot {}, {}, g++ {}\n\n{}.\n",
-                                 fmt::join(arguments, " "),
-                                 kVersion,
-                                 processor_name(),
-                                 __VERSION__,
-                                 explanation());
+  std::string text = fmt::format("{}\n{}.\n", markdown_head(arguments), explanation());
   for (const BenchmarkScene& scene : scenes) {
     text += fmt::format("\n## {}\n\n{}\n\n{}\n{}\n{}",
                         scene.problem.trajectory.scene,

@@ -15,6 +15,9 @@ void add_benchmark_json(const std::vector<BenchmarkScene>& scenes, Json& json);
 // Per scene a table of times at equal error, and what did not arrive.
 std::string benchmark_text(const std::vector<BenchmarkScene>& scenes);
 
+// What was run, and by what: the top of a report.
+std::string markdown_head(const std::vector<std::string>& arguments);
+
 // The same as Markdown, with a table of all rows.
 std::string benchmark_markdown(const std::vector<BenchmarkScene>& scenes,
                                const std::vector<std::string>& arguments);

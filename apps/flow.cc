@@ -130,6 +130,10 @@ void add_flow(CLI::App& app, Invocation& invocation) {
   add("--step", options->step, "H", "length of a step; the last one may be shorter");
   add("--steps", options->steps, "N", "number of equal steps");
   add("--tolerance", options->tolerance, "TOL", "choose the steps for this error at the end");
+  add("--stage-tolerance",
+      options->stage_tolerance,
+      "TOL",
+      "end the iteration for the stages at changes below this, not at round-off");
   add("--start-time", options->start_time, "T0", "time at the start (0)");
   flow.add_flag("--tangent", options->tangent, "also d(q,p)(T)/d(q,p)(0)");
   add_run_options(flow, options->run);

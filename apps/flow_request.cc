@@ -135,6 +135,15 @@ void parse_steps(const FlowOptions& options, FlowRequest& request) {
   } else {
     request.tolerance = parse_tolerance("--tolerance", options.tolerance);
   }
+  if (options.stage_tolerance.empty()) return;
+  const double stop = parse_tolerance("--stage-tolerance", options.stage_tolerance);
+  if (!request.plan) {
+    refuse("--stage-tolerance",
+           options.stage_tolerance,
+           "given besides --tolerance, which chooses it",
+           "--stage-tolerance with --step or --steps only");
+  }
+  request.plan->stop = stop;
 }
 
 }  // namespace

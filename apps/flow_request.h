@@ -20,6 +20,7 @@ struct FlowOptions {
   std::string step;
   std::string steps;
   std::string tolerance;
+  std::string stage_tolerance;
   std::string start_time = "0";
   bool tangent = false;
 };

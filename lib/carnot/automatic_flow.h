@@ -59,7 +59,8 @@ typename Stepper::Scalar step_error(const Stepper& step) {
   const T high = std::max(size[s - 2], size[s - 1]);
   const T at = T(s) - T(1.5);
   const T exponent = (T(tableau.order) - at) / (at - T(first) - T(0.5));
-  return low > T(0) ? high * std::pow(high / low, exponent) : T(0);
+  // Its size is all that counts, and a power of doubles takes half an iteration.
+  return low > T(0) ? high * T(std::pow(float(high / low), float(exponent))) : T(0);
 }
 
 namespace automatic {
@@ -137,7 +138,7 @@ Trial<Stepper> trial(const Stepper& fresh,
       if (left / h > kMostSteps) return trial;
       continue;
     }
-    trial.error += error * std::pow(h / length, order);
+    trial.error += length < h ? error * std::pow(h / length, order) : error;
     trial.loose = std::max(trial.loose, kLoose * moved);
     trial.z = z;
     t += sign * length;

@@ -85,7 +85,7 @@ class RungeKutta {
   // Advances z from t to t + h. On failure z and the branch are unchanged. Allocates nothing.
   [[nodiscard]] StepReport step(const T& t, const T& h, State<T, kDof>& z) {
     StepReport report;
-    if (!z.value.allFinite()) (void)fail(RateStatus::kNotFinite, report);
+    if (!all_finite(z.value)) (void)fail(RateStatus::kNotFinite, report);
     if (report.status != StepStatus::kOk) return report;
     const int count = tableau_.stages();
     if (coupled()) {
@@ -98,7 +98,7 @@ class RungeKutta {
     State<T, kDof> end = z;
     if (report.status == StepStatus::kOk) {
       end.add(sum_of_increments(tableau_, increments_));
-      if (!end.value.allFinite()) (void)fail(RateStatus::kNotFinite, report);
+      if (!all_finite(end.value)) (void)fail(RateStatus::kNotFinite, report);
     }
     if (report.status != StepStatus::kOk) {
       start_on(branch_);
@@ -272,16 +272,10 @@ class RungeKutta {
   // rate fails; `change` is that of each component, where it is asked for.
   T sweep(const Block& block, Stages& next, Point* change, StepReport& report) {
     if constexpr (kRows) {
-      alignas(64) std::array<T, kLanes> time;
-      alignas(64) std::array<T, kLanes> weights;
-      for (int l = 0; l < kLanes; ++l) {
-        time[l] = block.t + tableau_.c[l] * block.h;
-        weights[l] = block.h * tableau_.omega[l];
-      }
       const Sweep sweep = packed_sweep<System, s>(system_,
-                                                  time.data(),
+                                                  times_.data(),
                                                   tableau_.mu.data(),
-                                                  weights.data(),
+                                                  weights_.data(),
                                                   block.z.value.data(),
                                                   block.z.compensation.data(),
                                                   stages_.data(),
@@ -305,6 +299,10 @@ class RungeKutta {
   // Fixed point. True when the stages have settled.
   bool iterate(const Block& block, StepReport& report) {
     block.of(stages_).setConstant(std::numeric_limits<T>::max());
+    if constexpr (kRows) {
+      times_ = (block.t + block.h * tableau_.c.array()).matrix();
+      weights_ = block.h * tableau_.omega;
+    }
     return stop_ > T(0) ? iterate_to_tolerance(block, report) : iterate_to_round_off(block, report);
   }
 
@@ -366,6 +364,8 @@ class RungeKutta {
   alignas(64) Stages stages_;
   alignas(64) Stages increments_;
   alignas(64) StageRows<T, System::kAlgebraic, s, kMaxStages> algebraic_;
+  alignas(64) StageVector<T, s> times_;    // t + c_i h, of stages in rows,
+  alignas(64) StageVector<T, s> weights_;  // h omega_i
   Algebraic branch_;
   T stop_ = T(0);
   T first_change_ = T(0);
