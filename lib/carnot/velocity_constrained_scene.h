@@ -46,6 +46,13 @@ concept HasFrameMass = HasFrame<S> && requires(const S& scene, const Vector<doub
     } -> std::convertible_to<Matrix<double, S::kDof - S::kMultipliers, S::kDof - S::kMultipliers>>;
 };
 
+// The same where B'M B is diagonal, of the columns of B that are orthogonal under M: its diagonal.
+template <class S>
+concept HasOrthogonalFrame = HasFrame<S> &&
+    requires(const S& scene, const Vector<double, S::kDof>& q) {
+  { scene.frame_masses(q) } -> std::convertible_to<Vector<double, S::kDof - S::kMultipliers>>;
+};
+
 // h(q) = 0, kHolonomic (l) of them, besides the velocity constraints.
 template <class S>
 concept HasHolonomic = requires(const S& scene, const Vector<double, S::kDof>& q) {

@@ -16,7 +16,11 @@
 //                H(q, p, u) = p.B u - u'(B'M B) u/2 + V, stationary at (B'M B) u = B'p. y = u.
 //                The multipliers, wanted for output only, follow from G G' lambda = G (M v - p).
 //
-// p' = -H_q at frozen y, by Jets from the same formula or by the scene's own `frame_gradient`.
+// p' = -H_q at frozen y: with derivatives of M, G, B and V by Jets,
+//
+//   H_q = -v'M_q v/2 + V_q + lambda.G_q v     or     (p - M v).B_q u - v'M_q v/2 + V_q, v = B u,
+//
+// where no product of Jets is formed, or by the scene's own `frame_gradient`.
 #pragma once
 
 #include <cmath>
@@ -246,19 +250,30 @@ class VelocityConstraints {
                                       Vector<T, kFrame>& u,
                                       Rate<T, kDof>& out) const {
     const Matrix<T, kDof, kFrame> b = scene_.frame(q);
-    const Matrix<T, kFrame, kFrame> reduced = frame_mass(q, b);
-    const Cholesky<T, kFrame> factor(reduced);
-    if (!factor.positive()) return mass_failure(reduced);
-    const Vector<T, kFrame> reduced_p = product(b.transpose(), p);
-    u = factor.solve(reduced_p);
+    u = product(b.transpose(), p);
+    if constexpr (HasOrthogonalFrame<Scene>) {
+      const Vector<T, kFrame> masses = scene_.frame_masses(q);
+      bool positive = true;
+      for (int i = 0; i < kFrame; ++i) {
+        positive = positive && all(masses[i] > constant<T>(0));
+        u[i] = u[i] / masses[i];
+      }
+      if (!positive) return mass_failure(masses);
+    } else {
+      const Matrix<T, kFrame, kFrame> reduced = frame_mass(q, b);
+      const Cholesky<T, kFrame> factor(reduced);
+      if (!factor.positive()) return mass_failure(reduced);
+      u = factor.solve(u);
+    }
     out.q_dot = product(b, u);
     if constexpr (HasFrameGradient<Scene>) {
       out.p_dot = -scene_.frame_gradient(q, p, u);
     } else {
-      using J = Jet<T, kDof>;
-      const Vector<J, kDof> pj = unseeded<J>(p);
-      const Vector<J, kFrame> uj = unseeded<J>(u);
-      out.p_dot = -gradient([&](const auto& x) { return frame_hamiltonian(x, pj, uj); }, q);
+      const Vector<T, kDof> excess = p - product(scene_.mass(q), out.q_dot);
+      const auto at = seeded(q);
+      Vector<T, kDof> slope = kinetic_slope(at, out.q_dot);
+      add_slope(scene_.frame(at), excess, u, slope);
+      out.p_dot = -slope;
     }
     return status_of(out);
   }
@@ -289,11 +304,44 @@ class VelocityConstraints {
     }
     y.template head<kDof>() = v;
     out.q_dot = v;
-    using J = Jet<T, kDof>;
-    const Vector<J, kDof> pj = unseeded<J>(p);
-    const Vector<J, kDof + kMultipliers> yj = unseeded<J>(y);
-    out.p_dot = -gradient([&](const auto& x) { return multiplier_hamiltonian(x, pj, yj); }, q);
+    const auto at = seeded(q);
+    Vector<T, kDof> slope = kinetic_slope(at, v);
+    if constexpr (kMultipliers > 0) {
+      const Vector<T, kMultipliers> lambda = y.template tail<kMultipliers>();
+      add_slope(scene_.constraints(at), lambda, v, slope);
+    }
+    out.p_dot = -slope;
     return status_of(out);
+  }
+
+  // Adds d/dq of a'm(q) b at fixed a, b to `slope`.
+  template <class Jets, class T, int rows, int cols>
+  static void add_slope(const Jets& m,
+                        const Vector<T, rows>& a,
+                        const Vector<T, cols>& b,
+                        Vector<T, kDof>& slope) {
+    for (int i = 0; i < rows; ++i) {
+      for (int j = 0; j < cols; ++j) {
+        const T weight = a[i] * b[j];
+        for (int d = 0; d < kDof; ++d) slope[d] += weight * m(i, j).v[d];
+      }
+    }
+  }
+
+  // d/dq of V - v'M v/2 at fixed v. `q` is seeded.
+  template <class T>
+  [[nodiscard]] Vector<T, kDof> kinetic_slope(const Vector<Jet<T, kDof>, kDof>& q,
+                                              const Vector<T, kDof>& v) const {
+    Vector<T, kDof> slope = Vector<T, kDof>::Constant(constant<T>(0));
+    if constexpr (HasPotential<Scene>) slope = scene_.potential(q).v;
+    const Matrix<Jet<T, kDof>, kDof, kDof> mass = scene_.mass(q);
+    for (int i = 0; i < kDof; ++i) {
+      for (int j = 0; j <= i; ++j) {
+        const T weight = i == j ? constant<T>(-0.5) * v[i] * v[i] : -v[i] * v[j];
+        for (int d = 0; d < kDof; ++d) slope[d] += weight * mass(i, j).v[d];
+      }
+    }
+    return slope;
   }
 
   // Why a factor failed; off the hot path.

@@ -117,6 +117,10 @@ TYPED_TEST(VelocityScenesTest, MassIsSymmetricAndPositiveOnTheKernel) {
     if constexpr (HasFrameMass<TypeParam>) {
       EXPECT_LE(distance(reduced, this->scene_.frame_mass(q)), 256 * kEps);
     }
+    if constexpr (HasOrthogonalFrame<TypeParam>) {
+      const typename TestFixture::Reduced masses = this->scene_.frame_masses(q).asDiagonal();
+      EXPECT_LE(distance(reduced, masses), 256 * kEps);
+    }
   }
 }
 

@@ -63,6 +63,12 @@ struct Engel {
     return b;
   }
 
+  // The diagonal of B'M B.
+  template <class T>
+  [[nodiscard]] Vector<T, 2> frame_masses(const Vector<T, 4>& /*q*/) const {
+    return {constant<T>(1), constant<T>(1)};
+  }
+
   // d/dq [p.B u - u.u/2].
   template <class T>
   [[nodiscard]] Vector<T, 4> frame_gradient(const Vector<T, 4>& q,

@@ -52,6 +52,12 @@ struct Martinet {
     return b;
   }
 
+  // The diagonal of B'M B.
+  template <class T>
+  [[nodiscard]] Vector<T, 2> frame_masses(const Vector<T, 3>& /*q*/) const {
+    return {constant<T>(1), constant<T>(1)};
+  }
+
   // d/dq [p.B u - u.u/2].
   template <class T>
   [[nodiscard]] Vector<T, 3> frame_gradient(const Vector<T, 3>& q,

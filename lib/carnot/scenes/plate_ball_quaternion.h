@@ -70,15 +70,12 @@ struct PlateBallQuaternion {
     return b;
   }
 
-  // B'M B.
+  // The diagonal of B'M B.
   template <class T>
-  [[nodiscard]] Matrix<T, 3, 3> frame_mass(const Vector<T, 6>& q) const {
+  [[nodiscard]] Vector<T, 3> frame_masses(const Vector<T, 6>& q) const {
     const Vector<T, 4> attitude = q.template tail<4>();
     const T square = dot(attitude, attitude);
-    Matrix<T, 3, 3> a = Matrix<T, 3, 3>::Constant(constant<T>(0));
-    a(0, 0) = a(1, 1) = constant<T>(1);
-    a(2, 2) = square * square;
-    return a;
+    return {constant<T>(1), constant<T>(1), square * square};
   }
 
   // d/dq [p.B u - u'B'M B u/2]: the attitude has B u = c q with the quaternion

@@ -63,14 +63,12 @@ struct RodSkate {
     return b;
   }
 
-  // B'M B = 2 |d|^2 I.
+  // The diagonal of B'M B = 2 |d|^2 I.
   template <class T>
-  [[nodiscard]] Matrix<T, 3, 3> frame_mass(const Vector<T, 4>& q) const {
+  [[nodiscard]] Vector<T, 3> frame_masses(const Vector<T, 4>& q) const {
     const T dx = q[2] - q[0];
     const T dy = q[3] - q[1];
-    Matrix<T, 3, 3> a = Matrix<T, 3, 3>::Constant(constant<T>(0));
-    a(0, 0) = a(1, 1) = a(2, 2) = constant<T>(2) * (dx * dx + dy * dy);
-    return a;
+    return Vector<T, 3>::Constant(constant<T>(2) * (dx * dx + dy * dy));
   }
 
   // d/dq [p.B u - u'B'M B u/2 + V]: but for V, d alone enters.

@@ -81,14 +81,10 @@ struct Satellite {
     return b;
   }
 
-  // B'M B.
+  // The diagonal of B'M B.
   template <class T>
-  [[nodiscard]] Matrix<T, 2, 2> frame_mass(const Vector<T, 3>& /*q*/) const {
-    Matrix<T, 2, 2> a;
-    a(0, 0) = constant<T>(j1);
-    a(0, 1) = a(1, 0) = constant<T>(0);
-    a(1, 1) = constant<T>(j2);
-    return a;
+  [[nodiscard]] Vector<T, 2> frame_masses(const Vector<T, 3>& /*q*/) const {
+    return {constant<T>(j1), constant<T>(j2)};
   }
 
   // d/dq [p.B u - u'B'M B u/2].

@@ -63,16 +63,12 @@ struct SatelliteQuaternion {
     return b;
   }
 
-  // B'M B: the rates of column j of B are |q|^2 times a unit vector.
+  // The diagonal of B'M B: the rates of column j of B are |q|^2 times a unit vector.
   template <class T>
-  [[nodiscard]] Matrix<T, 3, 3> frame_mass(const Vector<T, 4>& q) const {
+  [[nodiscard]] Vector<T, 3> frame_masses(const Vector<T, 4>& q) const {
     const T square = dot(q, q);
     const T scale = square * square;
-    Matrix<T, 3, 3> a = Matrix<T, 3, 3>::Constant(constant<T>(0));
-    a(0, 0) = constant<T>(j1) * scale;
-    a(1, 1) = constant<T>(j2) * scale;
-    a(2, 2) = scale;
-    return a;
+    return {constant<T>(j1) * scale, constant<T>(j2) * scale, scale};
   }
 
   // d/dq [p.B u - u'B'M B u/2]: B u = q c with the quaternion c = (u3, u1, u2, 0)/2.

@@ -75,16 +75,14 @@ struct Trailers {
     return b;
   }
 
-  // B'M B.
+  // The diagonal of B'M B.
   template <class T>
-  [[nodiscard]] Matrix<T, 2, 2> frame_mass(const Vector<T, kDof>& q) const {
-    Matrix<T, 2, 2> a;
-    a(0, 0) = a(1, 1) = constant<T>(1);
-    a(0, 1) = a(1, 0) = constant<T>(0);
-    if (trailer_weight == 0) return a;
+  [[nodiscard]] Vector<T, 2> frame_masses(const Vector<T, kDof>& q) const {
+    Vector<T, 2> masses(constant<T>(1), constant<T>(1));
+    if (trailer_weight == 0) return masses;
     const Matrix<T, kDof, 2> b = frame(q);
-    for (int i = 3; i < kDof; ++i) a(0, 0) += constant<T>(trailer_weight) * b(i, 0) * b(i, 0);
-    return a;
+    for (int i = 3; i < kDof; ++i) masses[0] += constant<T>(trailer_weight) * b(i, 0) * b(i, 0);
+    return masses;
   }
 
   // d/dq [p.B u - u'B'M B u/2]. What the car's heading and the hooks' angles d_i change: each d_i

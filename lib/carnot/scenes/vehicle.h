@@ -66,16 +66,12 @@ struct Vehicle {
     return b;
   }
 
-  // B'M B.
+  // The diagonal of B'M B.
   template <class T>
-  [[nodiscard]] Matrix<T, 2, 2> frame_mass(const Vector<T, 4>& q) const {
+  [[nodiscard]] Vector<T, 2> frame_masses(const Vector<T, 4>& q) const {
     using std::sin;
     const T turn = sin(q[3] - q[2]) * constant<T>(1 / length);
-    Matrix<T, 2, 2> a;
-    a(0, 0) = constant<T>(1) + constant<T>(alpha) * turn * turn;
-    a(0, 1) = a(1, 0) = constant<T>(0);
-    a(1, 1) = constant<T>(beta);
-    return a;
+    return {constant<T>(1) + constant<T>(alpha) * turn * turn, constant<T>(beta)};
   }
 
   // d/dq [p.B u - u'B'M B u/2]: theta and phi enter by phi and delta only.

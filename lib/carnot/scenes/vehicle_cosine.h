@@ -30,8 +30,8 @@ struct VehicleCosine {
   }
 
   template <class T>
-  [[nodiscard]] Matrix<T, 2, 2> frame_mass(const Vector<T, 4>& q) const {
-    return vehicle.frame_mass(q);
+  [[nodiscard]] Vector<T, 2> frame_masses(const Vector<T, 4>& q) const {
+    return vehicle.frame_masses(q);
   }
 
   template <class T>
