@@ -253,9 +253,10 @@ class VelocityConstraints {
     u = product(b.transpose(), p);
     if constexpr (HasOrthogonalFrame<Scene>) {
       const Vector<T, kFrame> masses = scene_.frame_masses(q);
+      using Number = std::decay_t<decltype(value_of(masses[0]))>;
       bool positive = true;
       for (int i = 0; i < kFrame; ++i) {
-        positive = positive && all(masses[i] > constant<T>(0));
+        positive = positive && all(value_of(masses[i]) > Number(0));
         u[i] = u[i] / masses[i];
       }
       if (!positive) return mass_failure(masses);
