@@ -208,25 +208,26 @@ class Pack {
     for (int i = 0; i < kParts; ++i) Ops::store(part(i), to + i * Ops::kSize);
   }
 
-  Pack operator-() const {
+  // Inlined whatever the size of the rest: a call moves registers through memory.
+  [[gnu::always_inline]] Pack operator-() const {
     return each([&](int i) { return -part(i); });
   }
-  friend Pack operator+(const Pack& a, const Pack& b) {
+  [[gnu::always_inline]] friend Pack operator+(const Pack& a, const Pack& b) {
     return each([&](int i) { return a.part(i) + b.part(i); });
   }
-  friend Pack operator-(const Pack& a, const Pack& b) {
+  [[gnu::always_inline]] friend Pack operator-(const Pack& a, const Pack& b) {
     return each([&](int i) { return a.part(i) - b.part(i); });
   }
-  friend Pack operator*(const Pack& a, const Pack& b) {
+  [[gnu::always_inline]] friend Pack operator*(const Pack& a, const Pack& b) {
     return each([&](int i) { return a.part(i) * b.part(i); });
   }
-  friend Pack operator/(const Pack& a, const Pack& b) {
+  [[gnu::always_inline]] friend Pack operator/(const Pack& a, const Pack& b) {
     return each([&](int i) { return a.part(i) / b.part(i); });
   }
-  Pack& operator+=(const Pack& b) { return *this = *this + b; }
-  Pack& operator-=(const Pack& b) { return *this = *this - b; }
-  Pack& operator*=(const Pack& b) { return *this = *this * b; }
-  Pack& operator/=(const Pack& b) { return *this = *this / b; }
+  [[gnu::always_inline]] Pack& operator+=(const Pack& b) { return *this = *this + b; }
+  [[gnu::always_inline]] Pack& operator-=(const Pack& b) { return *this = *this - b; }
+  [[gnu::always_inline]] Pack& operator*=(const Pack& b) { return *this = *this * b; }
+  [[gnu::always_inline]] Pack& operator/=(const Pack& b) { return *this = *this / b; }
 
   friend Mask operator<(const Pack& a, const Pack& b) {
     return compare([&](int i) { return a.part(i) < b.part(i); });
