@@ -68,11 +68,15 @@ TEST(RateStatusTest, VanishingConstraint) {
 
 TEST(RateStatusTest, MassNotPositiveOnAdmissibleVelocities) {
   const VelocityConstraints<test::FadingMass> framed{{}};
+  const VelocityConstraints<test::FadingMasses> orthogonal{{}};
   const VelocityConstraints<test::WithoutFrame<test::FadingMass>> plain{{}};
   const Vector<double, 3> p(1, 2, 3);
   EXPECT_EQ(status(framed, {1, 0, 0}, p), RateStatus::kOk);
+  EXPECT_EQ(status(orthogonal, {1, 0, 0}, p), RateStatus::kOk);
+  EXPECT_EQ(status(orthogonal, {NAN, 0, 0}, p), RateStatus::kNotFinite);
   EXPECT_EQ(status(plain, {1, 0, 0}, p), RateStatus::kOk);
   for (const double q : {0.0, -1.0}) {
+    EXPECT_EQ(status(orthogonal, {q, 0, 0}, p), RateStatus::kMassNotPositive);
     EXPECT_EQ(status(framed, {q, 0, 0}, p), RateStatus::kMassNotPositive);
     EXPECT_EQ(status(plain, {q, 0, 0}, p), RateStatus::kMassNotPositive);
   }

@@ -89,6 +89,26 @@ TEST_P(RungeKuttaNewtonTest, IsNotNeededWhereTheFixedPointContracts) {
   }
 }
 
+// Where the fixed point settles slowly, Newton's method takes over: no step takes as many
+// iterations as a contraction of 0.7 needs to round-off, which is 103.
+TEST_P(RungeKuttaNewtonTest, TakesOverWhereTheFixedPointContractsSlowly) {
+  constexpr int kMostIterations = 110;
+  bool last = false;
+  for (double frequency = 0.25; frequency < 20; frequency *= 1.1) {
+    const Oscillator system{frequency * frequency};
+    RungeKutta<Oscillator> step(system, tableau_);
+    auto z = make_state<double, 1>(Vector<double, 1>(0.3), Vector<double, 1>(-0.8));
+    const auto before = z;
+    const StepReport report = step.step(0, 1, z);
+    ASSERT_EQ(report.status, StepStatus::kOk) << frequency;
+    EXPECT_LE(report.evaluations, kMostIterations * tableau_.stages()) << frequency;
+    EXPECT_LE(test::stage_defect(step, 1.0, before), frequency * frequency * 64 * kEps);
+    EXPECT_TRUE(report.newton || !last) << frequency;  // once slow, slow for all that are faster
+    last = report.newton;
+  }
+  EXPECT_TRUE(last);
+}
+
 // A stiff oscillator, where the step is a rational function of (h w)^2 = 1e4 and Newton is exact.
 TEST_P(RungeKuttaNewtonTest, StiffOscillator) {
   const Oscillator system{1e4};

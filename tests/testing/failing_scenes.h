@@ -52,6 +52,14 @@ struct FadingMass {
   }
 };
 
+// The same, told by an orthogonal frame.
+struct FadingMasses : FadingMass {
+  template <class T>
+  [[nodiscard]] Vector<T, 2> frame_masses(const Vector<T, 3>& q) const {
+    return {constant<T>(1), q[0]};
+  }
+};
+
 // A particle on a line in V = -q^4: from q = 0, p = 1 it reaches infinity in finite time. No
 // constraints at all.
 struct RunAway {
