@@ -50,22 +50,21 @@ void fold(const Segment& segment, std::vector<double>& z) {
 
 // Steps first, ..., last - 1. A flow keeps what its updates are rounded by to itself, so that one
 // of a single step has nothing from the step before.
-bool advance(const Segment& segment, bool compensated, long first, long last, double* z) {
-  constexpr long kTogether = 100000;
-  const long most = compensated ? kTogether : 1;
-  while (first < last) {
-    const long count = std::min(most, last - first);
-    const double length = kEnergyStep * static_cast<double>(count);
-    const auto plan = StepPlan::equal(kEnergyStep * static_cast<double>(first), length, count);
-    if (!segment.flow(plan, z).completed()) return false;
-    first += count;
+bool advance(
+    const Segment& segment, bool compensated, long first, long last, std::vector<double>& z) {
+  const long most = compensated ? last - first : 1;
+  for (; first < last; first += most) {
+    const double length = kEnergyStep * static_cast<double>(most);
+    const auto plan = StepPlan::equal(kEnergyStep * static_cast<double>(first), length, most);
+    if (!segment.flow(plan, z.data()).completed()) return false;
+    fold(segment, z);
   }
   return true;
 }
 
 // False when stopped.
 bool run_long(LongRun& run, const std::vector<long>& counts, const Progress& progress) {
-  constexpr long kLook = 10000;  // steps between two looks at Ctrl-C
+  constexpr long kLook = 100000;  // steps between two looks at Ctrl-C
   const Segment segment = find_scene(run.scene).make({}, kMethod);
   std::vector<double> z = start_of(run.scene, run.start);
   const double start = energy_of(segment, z);
@@ -74,8 +73,7 @@ bool run_long(LongRun& run, const std::vector<long>& counts, const Progress& pro
   for (const long count : counts) {
     while (ok && done < count) {
       const long next = std::min(count, done + kLook);
-      ok = advance(segment, run.compensated, done, next, z.data());
-      fold(segment, z);
+      ok = advance(segment, run.compensated, done, next, z);
       done = next;
       if (progress && !progress(static_cast<double>(done) / static_cast<double>(counts.back()))) {
         return false;

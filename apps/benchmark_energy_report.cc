@@ -36,7 +36,7 @@ Cells drift_table(const EnergyResult& result, bool all) {
         });
     for (const BenchmarkRow& row : curve.rows) {
       if (!all && &row != &*least) continue;
-      cells.push_back({curve.title(),
+      cells.push_back({curve.method,
                        fmt::format("{:.3g}", row.step_or_tolerance),
                        fmt::format("{:.1e}", row.energy_drift),
                        fmt::format("{:.3g}", 1e3 * row.seconds)});
@@ -74,11 +74,10 @@ plots::SeriesPanel drift_panel(const EnergyResult& result) {
   panel.title = "what a drift costs: vehicle, T = 1000";
   panel.x = {"CPU time of a run [s]", true};
   panel.y = {"largest |H - H_0|", true};
-  panel.legend = plots::Legend::kBottomLeft;
   int color = 0;
   for (const BenchmarkCurve& curve : benchmark_curves(result.drift.rows)) {
     plots::Series series;
-    series.title = curve.title();
+    series.title = curve.method;
     series.mark = plots::Series::Mark::kLineAndPoints;
     series.color = color++;
     for (const BenchmarkRow& row : curve.rows) {
@@ -95,7 +94,6 @@ plots::SeriesPanel growth_panel(const EnergyResult& result) {
   panel.title = "round-off: gauss16, h = 0.2";
   panel.x = {"steps", true};
   panel.y = {"|H - H_0| / |H_0|, root mean square", true};
-  panel.legend = plots::Legend::kTopLeft;
   int color = 0;
   std::string scene;
   for (const EnergyGrowth& point : result.growth) {
