@@ -1,7 +1,8 @@
 // The right-hand sides of `carnot benchmark` in closed form, by hand: the same for every peer.
 //
 // They are what an author who knows the problem would write for a general solver: the constraints
-// solved on paper, no matrices, no branches, sine and cosine inline.
+// solved on paper, no matrices, no branches, sine and cosine inline. On doubles, and on packs of
+// them for carnot_micro.
 #pragma once
 
 #include <array>
@@ -13,15 +14,21 @@
 
 namespace carnot::apps {
 
+template <class T>
 struct SineCosine {
-  double sine;
-  double cosine;
+  T sine;
+  T cosine;
 };
+
+template <class T>
+SineCosine<T> sine_cosine(const T& x) {
+  return {sin(x), cos(x)};
+}
 
 // To about an ulp of 1. Cody & Waite: x = k pi/2 + r with pi/2 as a sum of two doubles, the first
 // of 33 bits, so that k times it is exact; then the Taylor polynomials of degree 15 and 16, whose
 // remainders at pi/4 are below half a unit of round-off.
-inline SineCosine sine_cosine(double x) {
+inline SineCosine<double> sine_cosine(double x) {
   constexpr double kFar = 1e5;
   if (!(std::abs(x) < kFar)) return {std::sin(x), std::cos(x)};
   constexpr double kHigh = 0x1.921fb544p+0;
@@ -57,52 +64,59 @@ inline SineCosine sine_cosine(double x) {
 struct VehicleRate {
   static constexpr int kSize = 8;
 
-  void operator()(const double* z, double* f) const {
-    with_angles(z, sine_cosine(z[3]), sine_cosine(z[3] - z[2]), f);
+  template <class T>
+  void operator()(const T* z, T* f) const {
+    with_angles(z, sine_cosine(z[3]), sine_cosine(T(z[3] - z[2])), f);
   }
 
-  static void with_angles(const double* z, SineCosine phi, SineCosine delta, double* f) {
-    const double u1 =
-        (z[4] * phi.cosine + z[5] * phi.sine + z[6] * delta.sine) / (1 + delta.sine * delta.sine);
-    const double theta_dot = u1 * delta.sine;
-    const double by_delta = u1 * delta.cosine * (z[6] - theta_dot);
+  template <class T>
+  static void with_angles(const T* z, const SineCosine<T>& phi, const SineCosine<T>& delta, T* f) {
+    const T u1 = (z[4] * phi.cosine + z[5] * phi.sine + z[6] * delta.sine) /
+                 (T(1) + delta.sine * delta.sine);
+    const T theta_dot = u1 * delta.sine;
+    const T by_delta = u1 * delta.cosine * (z[6] - theta_dot);
     f[0] = u1 * phi.cosine;
     f[1] = u1 * phi.sine;
     f[2] = theta_dot;
     f[3] = z[7];
-    f[4] = f[5] = 0;
+    f[4] = f[5] = T(0);
     f[6] = by_delta;
     f[7] = u1 * (z[4] * phi.sine - z[5] * phi.cosine) - by_delta;
   }
 };
 
 // grad V of V = -cos r, r^2 = |m|^2, m = (x - cos(theta)/2, y - sin(theta)/2): sin(r)/r m . dm/dq.
+template <class T>
 struct PotentialSlope {
-  double x;
-  double y;
-  double theta;
+  T x;
+  T y;
+  T theta;
 };
 
-inline PotentialSlope vehicle_cosine_slope(const double* q, SineCosine theta) {
-  constexpr double kTiny = 1e-300;  // r > 0 without a branch: sin(r)/r is 1 there
-  const double mx = q[0] - 0.5 * theta.cosine;
-  const double my = q[1] - 0.5 * theta.sine;
-  const double r = std::sqrt(mx * mx + my * my + kTiny);
-  const double slope = sine_cosine(r).sine / r;
-  return {slope * mx, slope * my, 0.5 * slope * (mx * theta.sine - my * theta.cosine)};
+template <class T>
+PotentialSlope<T> vehicle_cosine_slope(const T* q, const SineCosine<T>& theta) {
+  using std::sqrt;
+  const T tiny(1e-300);  // r > 0 without a branch: sin(r)/r is 1 there
+  const T half(0.5);
+  const T mx = q[0] - half * theta.cosine;
+  const T my = q[1] - half * theta.sine;
+  const T r = sqrt(T(mx * mx + my * my + tiny));
+  const T slope = sine_cosine(r).sine / r;
+  return {slope * mx, slope * my, half * slope * (mx * theta.sine - my * theta.cosine)};
 }
 
 // The same in this potential.
 struct VehicleCosineRate {
   static constexpr int kSize = 8;
 
-  void operator()(const double* z, double* f) const {
-    const SineCosine theta = sine_cosine(z[2]);
-    const SineCosine phi = sine_cosine(z[3]);
-    const SineCosine delta{phi.sine * theta.cosine - phi.cosine * theta.sine,
-                           phi.cosine * theta.cosine + phi.sine * theta.sine};
+  template <class T>
+  void operator()(const T* z, T* f) const {
+    const SineCosine<T> theta = sine_cosine(z[2]);
+    const SineCosine<T> phi = sine_cosine(z[3]);
+    const SineCosine<T> delta{phi.sine * theta.cosine - phi.cosine * theta.sine,
+                              phi.cosine * theta.cosine + phi.sine * theta.sine};
     VehicleRate::with_angles(z, phi, delta, f);
-    const PotentialSlope slope = vehicle_cosine_slope(z, theta);
+    const PotentialSlope<T> slope = vehicle_cosine_slope(z, theta);
     f[4] -= slope.x;
     f[5] -= slope.y;
     f[6] -= slope.theta;
@@ -114,14 +128,15 @@ struct VehicleCosineRate {
 struct HeisenbergRate {
   static constexpr int kSize = 6;
 
-  void operator()(const double* z, double* f) const {
-    const double s = (z[5] - (z[1] * z[3] - z[0] * z[4])) / (1 + z[0] * z[0] + z[1] * z[1]);
+  template <class T>
+  void operator()(const T* z, T* f) const {
+    const T s = (z[5] - (z[1] * z[3] - z[0] * z[4])) / (T(1) + z[0] * z[0] + z[1] * z[1]);
     f[0] = z[3] + z[1] * s;
     f[1] = z[4] - z[0] * s;
     f[2] = z[5] - s;
     f[3] = f[1] * s;
     f[4] = -f[0] * s;
-    f[5] = 0;
+    f[5] = T(0);
   }
 };
 

@@ -1,14 +1,15 @@
 // carnot_micro: nanoseconds of the pieces that `carnot benchmark` measures as a whole.
 //
-// rate/...     the right-hand side by hand: latency, where each call waits for the one before, as
-// in
-//              an explicit method; throughput, where it does not, as over many trajectories
-// scene/...    the same by the formulas of the scene
-// pack/...     eight of them side by side: by the scene with its frame, and with M and G alone, its
-//              derivatives by the library
-// step/...     one step of a method
-// peer/...     one accepted step of DOP853 with step control
-// warm/...     geodesics from one nearby (warm_start_micro.h)
+// rate/...       the right-hand side by hand: latency, where each call waits for the one before, as
+//                in an explicit method; throughput, where it does not, as over many trajectories
+// scene/...      the same by the formulas of the scene
+// pack/...       eight of them side by side, latency: by hand; by the scene with all that it
+// offers;
+//                with its frame, derivatives by the library; with M, G and V alone
+// iteration/...  one fixed-point iteration on eight stages
+// step/...       one step of a method
+// peer/...       one accepted step of DOP853 with step control
+// warm/...       geodesics from one nearby (warm_start_micro.h)
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -19,7 +20,9 @@
 #include "benchmark_dop853.h"
 #include "benchmark_rates.h"
 #include "benchmark_trajectory.h"
+#include "carnot/gauss.h"
 #include "carnot/packed_rate.h"
+#include "carnot/packed_stages.h"
 #include "carnot/phase_space.h"
 #include "carnot/scenes/heisenberg.h"
 #include "carnot/scenes/vehicle.h"
@@ -91,24 +94,95 @@ struct Plain {
   [[nodiscard]] T potential(const Vector<T, kDof>& q) const { return scene.potential(q); }
 };
 
+// With the frame besides.
 template <class Scene>
-void pack_latency(benchmark::State& state, const BenchmarkTrajectory& trajectory) {
-  constexpr int kLanes = 8;
+struct Framed : Plain<Scene> {
+  template <class T>
+  [[nodiscard]] auto frame(const Vector<T, Scene::kDof>& q) const {
+    return this->scene.frame(q);
+  }
+};
+
+// A row of eight for each component, all lanes alike.
+template <int size>
+struct Rows {
+  static constexpr int kLanes = 8;
+  explicit Rows(const BenchmarkTrajectory& trajectory) {
+    const std::vector<double> start = benchmark_start<double>(trajectory);
+    for (int i = 0; i < size * kLanes; ++i) z[i] = start[i / kLanes];
+  }
+  void disturb() {
+    for (int i = 0; i < size; ++i) z[i * kLanes] += kNothing * f[i * kLanes];
+  }
+  alignas(64) std::array<double, size * kLanes> z;
+  alignas(64) std::array<double, size * kLanes> f{};
+};
+
+template <class Rate>
+[[gnu::flatten, gnu::noinline]] void hand_pack(const double* z, double* f) {
+  using P = Pack<8>;
+  std::array<P, Rate::kSize> at;
+  std::array<P, Rate::kSize> rate;
+  for (int i = 0; i < Rate::kSize; ++i) at[i] = P::load(z + 8 * i);
+  Rate{}(at.data(), rate.data());
+  for (int i = 0; i < Rate::kSize; ++i) rate[i].store(f + 8 * i);
+}
+
+template <class Rate>
+void hand_pack_latency(benchmark::State& state, const BenchmarkTrajectory& trajectory) {
+  Rows<Rate::kSize> rows(trajectory);
+  for (auto _ : state) {
+    hand_pack<Rate>(rows.z.data(), rows.f.data());
+    rows.disturb();
+  }
+  benchmark::DoNotOptimize(rows.z.data());
+}
+
+// The stages of a step that has settled: each iteration finds again what it was given.
+template <class Scene>
+void iteration_latency(benchmark::State& state, const BenchmarkTrajectory& trajectory) {
+  constexpr double kStep = 0.3;
   constexpr int kSize = 2 * Scene::kDof;
   const auto system = make_system(Scene{});
+  using System = std::decay_t<decltype(system)>;
+  const Tableau<double, 8> tableau = fixed_gauss_tableau<double, 8>();
   const std::vector<double> start = benchmark_start<double>(trajectory);
-  alignas(64) std::array<double, kLanes> t{};
-  alignas(64) std::array<double, kSize * kLanes> z;
-  alignas(64) std::array<double, decltype(system)::kAlgebraic * kLanes> y;
-  alignas(64) std::array<double, kSize * kLanes> f;
-  for (int i = 0; i < kSize * kLanes; ++i) z[i] = start[i / kLanes];
+  const std::array<double, kSize> compensation{};
+  Rows<kSize> rows(trajectory);  // increments in f
+  alignas(64) std::array<double, 8> time{};
+  alignas(64) std::array<double, 8> weights;
+  alignas(64) std::array<double, System::kAlgebraic * 8> y;
+  for (int i = 0; i < 8; ++i) weights[i] = kStep * tableau.omega[i];
   for (auto _ : state) {
-    if (!packed_rate<kLanes>(system, t.data(), z.data(), y.data(), f.data())) {
+    const Sweep sweep = packed_sweep<System, 8>(system,
+                                                time.data(),
+                                                tableau.mu.data(),
+                                                weights.data(),
+                                                start.data(),
+                                                compensation.data(),
+                                                rows.z.data(),
+                                                y.data(),
+                                                rows.f.data(),
+                                                nullptr);
+    if (!sweep.ok) state.SkipWithError("no rate");
+  }
+  benchmark::DoNotOptimize(rows.f.data());
+}
+
+template <class Scene>
+void pack_latency(benchmark::State& state, const BenchmarkTrajectory& trajectory) {
+  constexpr int kSize = 2 * Scene::kDof;
+  const auto system = make_system(Scene{});
+  Rows<kSize> rows(trajectory);
+  alignas(64) std::array<double, 8> t{};
+  alignas(64) std::array<double, decltype(system)::kAlgebraic * 8> y;
+  for (auto _ : state) {
+    if (!packed_rate<8>(system, t.data(), rows.z.data(), y.data(), rows.f.data())) {
       state.SkipWithError("no rate");
     }
-    for (int i = 0; i < kSize; ++i) z[i * kLanes] += kNothing * f[i * kLanes];
+    rows.disturb();
   }
-  benchmark::DoNotOptimize(z.data());
+  benchmark::DoNotOptimize(rows.z.data());
 }
 
 void method_step(benchmark::State& state,
@@ -151,8 +225,11 @@ void add_scene(const BenchmarkTrajectory& trajectory) {
   add("rate/latency", [=](auto& state) { rate_latency<Rate>(state, trajectory); });
   add("rate/throughput", [=](auto& state) { rate_throughput<Rate>(state, trajectory); });
   add("scene/latency", [=](auto& state) { scene_latency<Scene>(state, trajectory); });
-  add("pack/frame", [=](auto& state) { pack_latency<Scene>(state, trajectory); });
+  add("pack/hand", [=](auto& state) { hand_pack_latency<Rate>(state, trajectory); });
+  add("pack/scene", [=](auto& state) { pack_latency<Scene>(state, trajectory); });
+  add("pack/frame", [=](auto& state) { pack_latency<Framed<Scene>>(state, trajectory); });
   add("pack/plain", [=](auto& state) { pack_latency<Plain<Scene>>(state, trajectory); });
+  add("iteration/gauss16", [=](auto& state) { iteration_latency<Scene>(state, trajectory); });
   for (const std::string method : {"midpoint", "gauss8", "gauss16", "dop853"}) {
     add("step/" + method, [=](auto& state) { method_step(state, trajectory, method); });
   }
