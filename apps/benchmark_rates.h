@@ -12,6 +12,8 @@
 #include <string_view>
 #include <utility>
 
+#include "carnot/pack.h"
+
 namespace carnot::apps {
 
 template <class T>
@@ -20,8 +22,8 @@ struct SineCosine {
   T cosine;
 };
 
-template <class T>
-SineCosine<T> sine_cosine(const T& x) {
+template <int W, class Lane>
+SineCosine<Pack<W, Lane>> sine_cosine(const Pack<W, Lane>& x) {
   return {sin(x), cos(x)};
 }
 

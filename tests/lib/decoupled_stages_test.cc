@@ -49,7 +49,7 @@ INSTANTIATE_TEST_SUITE_P(
     Gauss,
     DecoupledStagesTest,
     ::testing::Values("midpoint", "gauss4", "gauss6", "gauss8", "gauss12", "gauss16", "gauss24"),
-    [](const auto& info) { return std::string(info.param); });
+    [](const auto& method) { return std::string(method.param); });
 
 TEST_P(DecoupledStagesTest, SolveTheWholeSystem) {
   const Tableau<double> tableau = make_tableau(*find_method(GetParam()));
