@@ -32,8 +32,11 @@ struct VehicleDae : DaeSizes<4, 2> {
     residual(u, u_dot, sine_cosine(u[2]), sine_cosine(u[3]), r);
   }
 
-  static void residual(
-      const double* u, const double* u_dot, SineCosine theta, SineCosine phi, double* r) {
+  static void residual(const double* u,
+                       const double* u_dot,
+                       SineCosine<double> theta,
+                       SineCosine<double> phi,
+                       double* r) {
     const double* const p = u + 4;
     const double* const v = u + 8;
     const double front = u[12];
@@ -57,9 +60,9 @@ struct VehicleCosineDae : DaeSizes<4, 2> {
   static constexpr std::array<double, 2> kStartMultipliers{0, 0};
 
   void operator()(const double* u, const double* u_dot, double* r) const {
-    const SineCosine theta = sine_cosine(u[2]);
+    const SineCosine<double> theta = sine_cosine(u[2]);
     VehicleDae::residual(u, u_dot, theta, sine_cosine(u[3]), r);
-    const PotentialSlope slope = vehicle_cosine_slope(u, theta);
+    const PotentialSlope<double> slope = vehicle_cosine_slope(u, theta);
     r[4] += slope.x;
     r[5] += slope.y;
     r[6] += slope.theta;
