@@ -52,6 +52,8 @@ Json report_json(const GeodesicRequest& request,
   json["time"] = request.time;
   json["method"] = run.method.name;
   json["status"] = report.status == GeodesicStatus::kConverged ? "converged" : "not_converged";
+  const bool found = report.reason == Reason::kNone;
+  json["reason"] = found ? Json(nullptr) : Json(name_of(report.reason));
   json["message"] = report.message;
   json["geodesics"] = std::move(geodesics);
   json["starts"] = report.starts;

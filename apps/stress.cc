@@ -25,7 +25,9 @@ namespace {
 constexpr const char* kFooter = R"(
 From the origin to targets drawn uniformly, positions within 3, angles within pi, on the cover; each
 the default search for one geodesic on one thread, many at a time. "solved" has been verified by an
-independent integration, at knots where the end point is too sensitive. Times are CPU times.
+independent integration, at knots where the end point is too sensitive. Those that are not are
+counted by reason: the codes of `carnot geodesic`, and irregular-end where the constraints are
+dependent at the target; --json has them one by one, with messages. Times are CPU times.
 
 Examples
   carnot stress vehicle
@@ -49,6 +51,7 @@ struct Trial {
   bool solved = false;
   bool at_knots = false;
   Label label = Label::kUnknown;
+  std::string reason;  // a code
   std::string message;
 };
 
@@ -63,6 +66,7 @@ Trial try_target(const Segment& segment, std::uint64_t seed, int i) {
   const std::vector<double> from(trial.to.size(), 0.0);
   try {
     const GeodesicReport report = find_geodesics({segment, from, trial.to}, options);
+    trial.reason = name_of(report.reason);
     trial.message = report.message;
     trial.solved = !report.geodesics.empty();
     if (trial.solved) {
@@ -70,6 +74,7 @@ Trial try_target(const Segment& segment, std::uint64_t seed, int i) {
       trial.label = report.geodesics[0].label;
     }
   } catch (const std::invalid_argument& error) {  // e.g. constraints that are dependent there
+    trial.reason = "irregular-end";
     trial.message = error.what();
   }
   trial.seconds = thread_seconds() - began;
@@ -88,12 +93,6 @@ std::vector<Trial> try_all(
         count, threads, [&](int i) { trials[first + i] = try_target(segment, seed, first + i); });
   }
   return trials;
-}
-
-// The first words of a message: all but its numbers and its advice.
-std::string reason_of(const Trial& trial) {
-  const std::string reason = trial.message.substr(0, trial.message.find_first_of("(:;"));
-  return reason.substr(0, reason.find_last_not_of(' ') + 1);
 }
 
 double quantile(const std::vector<Trial>& trials, double share) {
@@ -117,8 +116,8 @@ Json summary_of(const std::vector<Trial>& trials) {
     if (trial.solved) {
       ++labels[name_of(trial.label)];
     } else {
-      ++reasons[reason_of(trial)];
-      failures.push_back({{"to", trial.to}, {"message", trial.message}});
+      ++reasons[trial.reason];
+      failures.push_back({{"to", trial.to}, {"reason", trial.reason}, {"message", trial.message}});
     }
   }
   const auto count = static_cast<double>(trials.size());

@@ -34,6 +34,7 @@ TEST(GeodesicCommand, KeepsTheContract) {
                           "time",
                           "method",
                           "status",
+                          "reason",
                           "message",
                           "geodesics",
                           "starts",
@@ -42,6 +43,7 @@ TEST(GeodesicCommand, KeepsTheContract) {
                           "missed_estimate",
                           "elapsed_seconds"));
   EXPECT_EQ(json["status"], "converged");
+  EXPECT_TRUE(json["reason"].is_null());
   EXPECT_EQ(json["to"].dump(), "[0,1,0,0]");
   ASSERT_EQ(json["geodesics"].size(), 1);
   const auto& geodesic = json["geodesics"][0];
@@ -119,6 +121,17 @@ TEST(GeodesicCommand, WithEqualEndsStays) {
   ASSERT_EQ(json["geodesics"].size(), 1);
   EXPECT_EQ(json["geodesics"][0]["action"], 0);
   EXPECT_EQ(json["geodesics"][0]["p0"].dump(), "[0,0,0,0]");
+}
+
+TEST(GeodesicCommand, FailureHasACode) {
+  const Outcome outcome = run(
+      {"geodesic", "unicycle", "--from", "0,0,0", "--to", "0,1,0", "--max-length", "2", "--json"});
+  EXPECT_EQ(outcome.status, 1);
+  const auto json = outcome.json();
+  EXPECT_EQ(json["status"], "not_converged");
+  EXPECT_EQ(json["reason"], "too-long");
+  EXPECT_THAT(json["message"].get<std::string>(), HasSubstr("larger --max-length"));
+  EXPECT_TRUE(json["geodesics"].empty());
 }
 
 // A whole turn is no way at all where angles agree modulo 2 pi.

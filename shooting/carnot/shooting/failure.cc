@@ -24,19 +24,25 @@ std::string regularity(const BoundaryValueProblem& problem) {
 }
 
 // What the flow from p0 says.
-std::string end_point(const BoundaryValueProblem& problem, const std::vector<double>& p0) {
+struct EndPoint {
+  std::string text;
+  bool beyond_double = false;  // the inverse of dq(T)/dp0 leaves no digit
+};
+
+EndPoint end_point(const BoundaryValueProblem& problem, const std::vector<double>& p0) {
   std::ostringstream text;
   text.precision(2);
   const int n = problem.segment.dof;
   std::vector<double> z;
   const auto tangent = end_point_tangent(problem, p0, problem.time, kSteps, z);
-  if (!tangent) return "the flow from its momentum cannot be integrated";
+  if (!tangent) return {"the flow from its momentum cannot be integrated"};
   const Eigen::VectorXd values =
       Eigen::JacobiSVD<Eigen::MatrixXd>(tangent->topRows(n)).singularValues();
   const auto rank = n - static_cast<int>(kernel_of(*tangent).cols());
+  const double condition = values[0] / values[n - 1];
   text << "the flow from its momentum ends " << largest_difference(z.data(), problem.to.data(), n)
        << " away, where dq(T)/dp(0) has rank " << rank << " of " << n << " and condition "
-       << values[0] / values[n - 1];
+       << condition;
   const ConjugateTimes conjugate =
       conjugate_times(problem, knots_of(problem, p0, 1, kSteps), kSteps / 4);
   if (conjugate.known) {
@@ -45,48 +51,81 @@ std::string end_point(const BoundaryValueProblem& problem, const std::vector<dou
     else
       text << ", past a conjugate time at " << conjugate.times.front();
   }
-  return text.str();
+  return {text.str(), !(condition * std::numeric_limits<double>::epsilon() < 1)};
 }
 
-}  // namespace
-
-std::string explain_failure(const BoundaryValueProblem& problem,
-                            const Search& search,
-                            const GeodesicOptions& options) {
-  const std::string tried =
-      std::to_string(search.starts()) + (search.starts() == 1 ? " start" : " starts") + " tried";
-  if (!options.guess.empty()) {
-    return "the guess did not lead to an extremal (" + end_point(problem, options.guess) +
-           "): leave --guess out to search from paths";
-  }
+// How far extremals went that were found but not wanted; infinite where there is none.
+double shortest_length(const Search& search) {
   double shortest = std::numeric_limits<double>::infinity();
   for (const Extremal& longer : search.extremals(true)) {
     shortest = std::min(shortest, longer.geodesic.length.value_or(shortest));
   }
+  return shortest;
+}
+
+// What became of discrete extremals, none of which is verified.
+std::string fate(Reason furthest) {
+  switch (furthest) {
+    case Reason::kNotRefined:
+      return "discrete extremals were found but have no counterpart on finer grids";
+    case Reason::kFlowFailed:
+      return "discrete extremals were found but the flow along them cannot be integrated";
+    case Reason::kNotJoined:
+      return "discrete extremals were found but shooting from them did not converge";
+    case Reason::kBeyondDouble:
+      return "discrete extremals were found but none that double precision can verify";
+    default:
+      return "discrete extremals were found but none could be verified";
+  }
+}
+
+Failure no_discrete(const BoundaryValueProblem& problem,
+                    const Search& search,
+                    const std::string& tried) {
+  std::ostringstream residual;
+  residual.precision(2);
+  residual << "best residual " << search.least_residual() << " of the momentum";
+  const bool collapsed = std::isinf(search.least_residual());
+  return {Reason::kNoStartConverged,
+          "no path relaxed to a discrete extremal (" + tried + ", " +
+              (collapsed ? "all collapsed to the straight line" : residual.str()) +
+              regularity(problem) +
+              "): try more --starts, another --seed, or a target less far away"};
+}
+
+}  // namespace
+
+Failure explain_failure(const BoundaryValueProblem& problem,
+                        const Search& search,
+                        const GeodesicOptions& options) {
+  const std::string tried =
+      std::to_string(search.starts()) + (search.starts() == 1 ? " start" : " starts") + " tried";
+  const bool joined = search.furthest() >= Reason::kNotVerified;
+  const double shortest = shortest_length(search);
   if (std::isfinite(shortest)) {
-    return "the shortest extremal found has the length " + std::to_string(shortest) +
-           ": try a larger --max-length";
+    return {Reason::kTooLong,
+            "the shortest extremal found has the length " + std::to_string(shortest) +
+                ": try a larger --max-length"};
+  }
+  if (!options.guess.empty()) {
+    return {joined ? search.furthest() : Reason::kGuessFailed,
+            "the guess did not lead to an extremal (" + end_point(problem, options.guess).text +
+                "): leave --guess out to search from paths"};
   }
   if (!problem.segment.has_transcription()) {
-    return "no momentum led to an extremal (" + tried + regularity(problem) +
-           "): try more --starts, another --seed, a --guess, or a target less far away";
+    return {joined ? search.furthest() : Reason::kNoStartConverged,
+            "no momentum led to an extremal (" + tried + regularity(problem) +
+                "): try more --starts, another --seed, a --guess, or a target less far away"};
   }
   const Path* nearest = search.nearest_discrete();
-  if (nearest == nullptr) {
-    std::ostringstream residual;
-    residual.precision(2);
-    residual << "best residual " << search.least_residual() << " of the momentum";
-    const bool collapsed = std::isinf(search.least_residual());
-    return "no path relaxed to a discrete extremal (" + tried + ", " +
-           (collapsed ? "all collapsed to the straight line" : residual.str()) +
-           regularity(problem) + "): try more --starts, another --seed, or a target less far away";
-  }
+  if (nearest == nullptr) return no_discrete(problem, search, tried);
   const std::vector<double> p0(nearest->momentum(0), nearest->momentum(0) + nearest->dof);
-  return "discrete extremals were found but none could be verified (" + tried +
-         "; of the one of "
-         "least action, " +
-         end_point(problem, p0) + regularity(problem) +
-         "): try a larger --tolerance, more --starts or another --seed";
+  const EndPoint end = end_point(problem, p0);
+  const bool beyond = !joined && end.beyond_double;
+  const Reason reason = beyond ? Reason::kBeyondDouble : search.furthest();
+  return {reason,
+          fate(reason) + " (" + tried + "; of the one of least action, " + end.text +
+              regularity(problem) + "): try a larger --tolerance, more --starts or another --seed"};
 }
 
 }  // namespace carnot

@@ -64,7 +64,7 @@ struct Found {
   int starts = 0;
   int converged = 0;
   bool finished = true;
-  std::string failure;  // why there is none, of the first image
+  Failure failure;  // why there is none, of the first image
 };
 
 void search_image(const GeodesicOptions& options, Found& found) {
@@ -89,7 +89,7 @@ void search_image(const GeodesicOptions& options, Found& found) {
   found.hits.insert(found.hits.end(), hits.begin(), hits.end());
   found.starts += search.starts();
   found.converged += search.converged();
-  if (found.list.empty() && found.failure.empty()) {
+  if (found.list.empty() && found.failure.reason == Reason::kNone) {
     found.failure = explain_failure(problem, search, options);
   }
 }
@@ -148,9 +148,13 @@ GeodesicReport find_geodesics(const BoundaryValueProblem& asked, const GeodesicO
   report.distinct_hit = static_cast<int>(found.hits.size());
   report.missed_estimate = missed_estimate(found.hits);
   report.status = list.empty() ? GeodesicStatus::kNotConverged : GeodesicStatus::kConverged;
-  if (list.empty()) report.message = found.failure;
+  if (list.empty()) {
+    report.reason = found.failure.reason;
+    report.message = found.failure.message;
+  }
   if (!found.finished) {
     report.status = GeodesicStatus::kInterrupted;
+    report.reason = Reason::kInterrupted;
     report.message = "interrupted";
   }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - began;

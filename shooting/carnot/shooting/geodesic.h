@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "carnot/shooting/boundary_value_problem.h"
+#include "carnot/shooting/reason.h"
 
 namespace carnot {
 
@@ -66,7 +67,8 @@ enum class GeodesicStatus { kConverged, kNotConverged, kInterrupted };
 
 struct GeodesicReport {
   GeodesicStatus status = GeodesicStatus::kNotConverged;
-  std::string message;  // why nothing was found, and what to try
+  Reason reason = Reason::kNone;  // why nothing was found; the first image's with mod_angles,
+  std::string message;            // in words, and what to try
   std::vector<Geodesic> geodesics;
   int starts = 0;
   int converged_starts = 0;

@@ -13,12 +13,15 @@ namespace {
 constexpr int kSegments = 8;    // at least; divides the intervals of a path
 constexpr long kFewSteps = 16;  // of the method over the whole time, at least
 
+void come_to(Reason& furthest, Reason reason) { furthest = std::max(furthest, reason); }
+
 // Joins the knots on a refined path. Where a segment cannot be integrated, or magnifies too much
 // for Newton's method to keep its digits, they are set closer together.
 std::optional<Extremal> join(const BoundaryValueProblem& problem,
                              const GeodesicOptions& options,
                              const Refinement& refined,
-                             int patience) {
+                             int patience,
+                             Reason& furthest) {
   constexpr double kMaxGrowth = 1e5;
   constexpr int kIntervalsPerSegment = 32;
   constexpr int kIntervalsPerStep = 8;
@@ -33,9 +36,14 @@ std::optional<Extremal> join(const BoundaryValueProblem& problem,
     Knots knots = knots_of(refined.path, segments);
     const Shooting joined = shoot(problem, shooting, knots);
     if (joined.converged) {
-      return verify(problem, std::move(knots), 2 * shooting.steps, options.tolerance);
+      Reason why = Reason::kNone;
+      auto extremal =
+          verify(problem, std::move(knots), 2 * shooting.steps, options.tolerance, &why);
+      come_to(furthest, why);
+      return extremal;
     }
     const bool begun = joined.iterations > 0 || joined.growth > 0;
+    come_to(furthest, begun ? Reason::kNotJoined : Reason::kFlowFailed);
     if (begun && joined.growth <= kMaxGrowth) break;
     segments *= 2;
     shooting.steps = begun ? std::max<long>(shooting.steps, segments) : 2 * shooting.steps;
@@ -47,39 +55,50 @@ std::optional<Extremal> join(const BoundaryValueProblem& problem,
 
 std::optional<Extremal> polish(const BoundaryValueProblem& problem,
                                const GeodesicOptions& options,
-                               const Path& path) {
+                               const Path& path,
+                               Reason* reason) {
   // From a grid that is fine enough Newton's method takes two or three iterations. Where it takes
   // more a finer grid, which is cheaper than the flow, comes first.
   constexpr std::array kPatience{4, 8, 12};
   RefinementOptions refinement;
   refinement.enough = 4e-2;
+  Reason furthest = Reason::kNotRefined;
+  std::optional<Extremal> extremal;
   for (const int patience : kPatience) {
     const Refinement refined = refine(problem, refinement, path);
-    if (!refined.found) return std::nullopt;
-    auto extremal = join(problem, options, refined, patience);
-    if (extremal) return extremal;
-    if (!refined.settled) return std::nullopt;
+    if (!refined.found) break;
+    extremal = join(problem, options, refined, patience, furthest);
+    if (extremal || !refined.settled) break;
     refinement.enough = 0.2 * refined.change;
   }
-  return std::nullopt;
+  if (!extremal && reason != nullptr) *reason = furthest;
+  return extremal;
 }
 
 std::optional<Extremal> polish(const BoundaryValueProblem& problem,
                                const GeodesicOptions& options,
-                               const Knots& knots) {
+                               const Knots& knots,
+                               Reason* reason) {
   ShootingOptions shooting;
   std::vector<std::string> ways{options.minimiser};
   if (ways.front() == "newton") ways.emplace_back("ceres");  // which reaches further
+  Reason furthest = Reason::kNone;
   for (const std::string& way : ways) {
     for (const long steps : {kFewSteps, 4 * kFewSteps}) {
       Knots joined = knots;
       shooting.minimiser = way;
       shooting.steps = steps;
-      if (!shoot(problem, shooting, joined).converged) continue;
-      auto extremal = verify(problem, std::move(joined), 2 * kFewSteps, options.tolerance);
+      if (!shoot(problem, shooting, joined).converged) {
+        come_to(furthest, Reason::kNotJoined);
+        continue;
+      }
+      Reason why = Reason::kNone;
+      auto extremal = verify(problem, std::move(joined), 2 * kFewSteps, options.tolerance, &why);
       if (extremal) return extremal;
+      come_to(furthest, why);
     }
   }
+  if (reason != nullptr) *reason = furthest;
   return std::nullopt;
 }
 

@@ -11,14 +11,17 @@
 namespace carnot {
 
 // Refines the path (refinement.h) and joins the knots on it (multiple_shooting.h): as many of them,
-// and as many steps, as the tangent flow asks for. Nothing when no extremal is near.
+// and as many steps, as the tangent flow asks for. Nothing when no extremal is near: `reason` says
+// how far it came.
 std::optional<Extremal> polish(const BoundaryValueProblem& problem,
                                const GeodesicOptions& options,
-                               const Path& path);
+                               const Path& path,
+                               Reason* reason = nullptr);
 
 // The same from knots that may be far from joined.
 std::optional<Extremal> polish(const BoundaryValueProblem& problem,
                                const GeodesicOptions& options,
-                               const Knots& knots);
+                               const Knots& knots,
+                               Reason* reason = nullptr);
 
 }  // namespace carnot

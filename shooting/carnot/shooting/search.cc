@@ -73,7 +73,10 @@ bool Search::run() {
 void Search::polish_guess() {
   starts_ = 1;
   for (const int segments : {kSegments, 1}) {
-    add(polish(problem_, options_, knots_of(problem_, options_.guess, segments, kFirstSteps)));
+    Outcome outcome;
+    const Knots knots = knots_of(problem_, options_.guess, segments, kFirstSteps);
+    outcome.extremal = polish(problem_, options_, knots, &outcome.reason);
+    add(outcome);
     if (!extremals_.empty()) break;
   }
   converged_ = extremals_.empty() ? 0 : 1;
@@ -156,16 +159,17 @@ void Search::relax_round(int count) {
 }
 
 void Search::momentum_round(int count) {
-  std::vector<std::optional<Extremal>> polished(count);
+  std::vector<Outcome> polished(count);
   parallel_for(count, threads_, [&](int i) {
     const std::vector<double> p0 = momentum_start(problem_, options_.seed, starts_ + i);
     if (p0.empty()) return;
     const int segments = i % 2 == 0 ? kSegments : 1;
-    polished[i] = polish(problem_, options_, knots_of(problem_, p0, segments, kFirstSteps));
+    const Knots knots = knots_of(problem_, p0, segments, kFirstSteps);
+    polished[i].extremal = polish(problem_, options_, knots, &polished[i].reason);
   });
   starts_ += count;
-  for (const std::optional<Extremal>& extremal : polished) {
-    const int index = add(extremal);
+  for (const Outcome& outcome : polished) {
+    const int index = add(outcome);
     if (index < 0) continue;
     ++hits_[root(index)];
     ++converged_;
@@ -255,9 +259,10 @@ Search::Polished Search::absorb(const std::vector<Candidate>& candidates) {
   }
   Polished tally;
   for (auto next = next_to_polish(fresh); !next.empty(); next = next_to_polish(fresh)) {
-    std::vector<std::optional<Extremal>> polished(next.size());
+    std::vector<Outcome> polished(next.size());
     parallel_for(static_cast<int>(next.size()), threads_, [&](int i) {
-      polished[i] = polish(problem_, options_, discrete_[next[i]].path);
+      Outcome& outcome = polished[i];
+      outcome.extremal = polish(problem_, options_, discrete_[next[i]].path, &outcome.reason);
     });
     for (std::size_t i = 0; i < next.size(); ++i) {
       Discrete& discrete = discrete_[next[i]];
@@ -294,6 +299,11 @@ Search::Candidate Search::relax_start(int i) const {
   }
   if (candidate.found && easy_ > 1) candidate.found = shrink(problem_, easy_, candidate.path);
   return candidate;
+}
+
+int Search::add(const Outcome& outcome) {
+  furthest_ = std::max(furthest_, outcome.reason);
+  return add(outcome.extremal);
 }
 
 int Search::add(const std::optional<Extremal>& extremal, int partner_of) {

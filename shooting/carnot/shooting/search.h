@@ -12,6 +12,7 @@
 #include "carnot/parallel.h"
 #include "carnot/shooting/knots.h"
 #include "carnot/shooting/path.h"
+#include "carnot/shooting/reason.h"
 #include "carnot/shooting/symmetry.h"
 #include "carnot/shooting/verification.h"
 
@@ -38,6 +39,8 @@ class Search {
   [[nodiscard]] std::vector<int> hits() const;
   [[nodiscard]] int starts() const { return starts_; }
   [[nodiscard]] int converged() const { return converged_; }
+  // How far the best attempt came that did not become an extremal.
+  [[nodiscard]] Reason furthest() const { return furthest_; }
   // The discrete extremal of least action; null where there is none. And the least residual that a
   // path was tightened to, relative to its momenta.
   [[nodiscard]] const Path* nearest_discrete() const;
@@ -82,6 +85,13 @@ class Search {
   std::vector<std::size_t> next_to_polish(std::vector<std::size_t>& fresh);
   [[nodiscard]] Candidate relax_start(int i) const;
   [[nodiscard]] std::size_t best() const;
+  // What polishing gave, and where it ended if it did not give anything.
+  struct Outcome {
+    std::optional<Extremal> extremal;
+    Reason reason = Reason::kNone;
+  };
+  // The same as below, and remembers how far it came.
+  int add(const Outcome& outcome);
   // Adds what is new, and its mirror partners. Returns the index in the list, or -1.
   int add(const std::optional<Extremal>& extremal, int partner_of = kNone);
   // The one that stands for it and its mirror partners.
@@ -114,6 +124,7 @@ class Search {
   double easy_ = 1;              // relaxation aims at a target this many times further away
   bool descends_ = false;        // the best extremal so far is no minimum
   std::vector<Discrete> discrete_;
+  Reason furthest_ = Reason::kNone;
   double least_residual_ = std::numeric_limits<double>::infinity();
   int starts_ = 0;
   int converged_ = 0;

@@ -14,6 +14,14 @@ namespace {
 constexpr int kPathIntervals = 32;
 constexpr long kMaxSteps = 4096;
 
+// What round-off may add to the defect of knots, where tangent flows grow by so much.
+double round_off(const Knots& knots, double growth) {
+  constexpr double kRoundings = 10;  // a step's share that does not average out
+  double largest = 0;
+  for (const double x : knots.z) largest = std::max(largest, std::abs(x));
+  return kRoundings * std::numeric_limits<double>::epsilon() * largest * std::max(1.0, growth);
+}
+
 // max-norm of flow(z_i) - z_{i+1} and, last, of q(T) - to. Infinite when a flow fails.
 double knot_defect(const BoundaryValueProblem& problem, const Knots& knots, long steps) {
   const int n = knots.dof;
@@ -73,7 +81,10 @@ void project(const BoundaryValueProblem& problem, std::vector<double>& p0) {
 std::optional<Extremal> verify(const BoundaryValueProblem& problem,
                                Knots knots,
                                long steps,
-                               double tolerance) {
+                               double tolerance,
+                               Reason* reason) {
+  Reason unused = Reason::kNone;
+  Reason& why = reason != nullptr ? *reason : unused;
   steps = enough_steps(problem, knots, steps, tolerance);
   const long tighter = 2 * steps;
   Extremal extremal;
@@ -101,14 +112,22 @@ std::optional<Extremal> verify(const BoundaryValueProblem& problem,
     ShootingOptions options;
     options.steps = steps;
     options.tolerance = 1e-14;  // as far as it goes
-    (void)shoot(problem, options, knots);
+    const double growth = shoot(problem, options, knots).growth;
     extremal.knots = knots;
     geodesic.verification = Verification::kKnots;
     geodesic.knot_defect = knot_defect(problem, knots, tighter);
-    if (!(geodesic.knot_defect <= tolerance)) return std::nullopt;
+    if (!(geodesic.knot_defect <= tolerance)) {
+      why = std::isinf(geodesic.knot_defect)                ? Reason::kFlowFailed
+            : tolerance < round_off(extremal.knots, growth) ? Reason::kBeyondDouble
+                                                            : Reason::kNotVerified;
+      return std::nullopt;
+    }
   }
   const FlowSummary measured = survey(problem, extremal.knots, tighter, kPathIntervals + 1);
-  if (!measured.completed()) return std::nullopt;
+  if (!measured.completed()) {
+    why = Reason::kFlowFailed;
+    return std::nullopt;
+  }
   const int n = problem.segment.dof;
   std::vector<double> velocity(n);
   std::vector<double> lambda(problem.segment.multipliers + 1);

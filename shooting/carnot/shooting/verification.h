@@ -24,11 +24,13 @@ struct Extremal {
   int image = 0;                            // of the target, see windings.h
 };
 
-// Nothing when neither check succeeds. `steps` is where the search for a step begins.
+// Nothing when neither check succeeds: `reason` says why. `steps` is where the search for a step
+// begins.
 std::optional<Extremal> verify(const BoundaryValueProblem& problem,
                                Knots knots,
                                long steps,
-                               double tolerance);
+                               double tolerance,
+                               Reason* reason = nullptr);
 
 // The same trajectory: nowhere further apart than 1e-6 of its extent.
 bool same(const Extremal& a, const Extremal& b);

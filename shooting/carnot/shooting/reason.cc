@@ -1,0 +1,31 @@
+#include "carnot/shooting/reason.h"
+
+namespace carnot {
+
+const char* name_of(Reason reason) {
+  switch (reason) {
+    case Reason::kNone:
+      return "none";
+    case Reason::kInterrupted:
+      return "interrupted";
+    case Reason::kNoStartConverged:
+      return "no-start-converged";
+    case Reason::kGuessFailed:
+      return "guess-failed";
+    case Reason::kNotRefined:
+      return "not-refined";
+    case Reason::kFlowFailed:
+      return "flow-failed";
+    case Reason::kNotJoined:
+      return "not-joined";
+    case Reason::kNotVerified:
+      return "not-verified";
+    case Reason::kBeyondDouble:
+      return "beyond-double";
+    case Reason::kTooLong:
+      return "too-long";
+  }
+  return "none";
+}
+
+}  // namespace carnot

@@ -1,0 +1,130 @@
+// Every way for a search to find nothing has its code.
+#include "carnot/shooting/failure.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "carnot/make_segment.h"
+#include "carnot/shooting/polish.h"
+#include "shooting/problems.h"
+#include "testing/failing_scenes.h"
+
+namespace carnot {
+namespace {
+
+constexpr long kSteps = 32;
+const std::vector<double> kSidewaysP0{
+    -5.363131400277701, 16.18437737239682, -9.311614737376091, -4.080757918683527};
+
+// The code of a search, and whether the report is one of a failure.
+Reason reason_of(const BoundaryValueProblem& problem, const GeodesicOptions& options) {
+  const GeodesicReport report = find_geodesics(problem, options);
+  EXPECT_TRUE(report.geodesics.empty());
+  EXPECT_NE(report.status, GeodesicStatus::kConverged);
+  EXPECT_FALSE(report.message.empty());
+  return report.reason;
+}
+
+Path straight_path(const BoundaryValueProblem& problem, int intervals) {
+  Path path;
+  path.intervals = intervals;
+  path.dof = problem.segment.dof;
+  path.lambda.assign(static_cast<std::size_t>(intervals) * problem.segment.transcribed, 0.0);
+  for (int i = 0; i <= intervals; ++i) {
+    for (int j = 0; j < path.dof; ++j) {
+      path.q.push_back(problem.from[j] + i * (problem.to[j] - problem.from[j]) / intervals);
+    }
+  }
+  fill_momenta(problem.segment, problem.time / intervals, path);
+  return path;
+}
+
+TEST(Failure, ThereIsNoneWhereThereIsAGeodesic) {
+  EXPECT_EQ(find_geodesics(test::straight_ahead()).reason, Reason::kNone);
+}
+
+TEST(Failure, Interrupted) {
+  GeodesicOptions options;
+  options.progress = [](double) { return false; };
+  EXPECT_EQ(reason_of(test::sideways(), options), Reason::kInterrupted);
+}
+
+TEST(Failure, NoStartConverged) {
+  GeodesicOptions options;
+  options.starts = 1;  // the straight line, which collapses
+  EXPECT_EQ(reason_of(test::sideways(), options), Reason::kNoStartConverged);
+}
+
+TEST(Failure, GuessFailed) {
+  GeodesicOptions options;
+  options.guess = {1e8, 1e8, -1e8, 1e8};
+  EXPECT_EQ(reason_of(test::sideways(), options), Reason::kGuessFailed);
+}
+
+TEST(Failure, TooLong) {
+  GeodesicOptions options;
+  options.max_length = 2;
+  const BoundaryValueProblem problem = test::unicycle({0, 0, 0}, {0, 1, 0});
+  EXPECT_EQ(reason_of(problem, options), Reason::kTooLong);
+  options.guess = find_geodesics(problem).geodesics.at(0).p0;
+  EXPECT_EQ(reason_of(problem, options), Reason::kTooLong);
+}
+
+// A discrete extremal without a finer one: a path that is nowhere.
+TEST(Failure, NotRefined) {
+  const BoundaryValueProblem problem = test::sideways();
+  Path path = straight_path(problem, 8);
+  path.q[path.dof + 1] = std::nan("");
+  Reason reason = Reason::kNone;
+  EXPECT_FALSE(polish(problem, {}, path, &reason));
+  EXPECT_EQ(reason, Reason::kNotRefined);
+}
+
+// The straight line is a discrete extremal, but leads where the mass is negative.
+TEST(Failure, FlowFailed) {
+  const BoundaryValueProblem problem(make_segment(test::FadingMass{}), {1, 0, 0}, {-1, 0, 0});
+  Reason reason = Reason::kNone;
+  EXPECT_FALSE(polish(problem, {}, straight_path(problem, 32), &reason));
+  EXPECT_EQ(reason, Reason::kFlowFailed);
+}
+
+TEST(Failure, NotJoined) {
+  const BoundaryValueProblem problem = test::sideways();
+  Reason reason = Reason::kNone;
+  const Knots astray = knots_of(problem, {300, -200, 100, 500}, 1, kSteps);
+  EXPECT_FALSE(polish(problem, {}, astray, &reason));
+  EXPECT_EQ(reason, Reason::kNotJoined);
+}
+
+// The midpoint rule does not reach the tolerance with the steps that verification affords.
+TEST(Failure, NotVerified) {
+  const BoundaryValueProblem problem(test::vehicle_midpoint(), {0, 0, 0, 0}, {0, 1, 0, 0});
+  GeodesicOptions options;
+  options.guess = kSidewaysP0;
+  EXPECT_EQ(reason_of(problem, options), Reason::kNotVerified);
+}
+
+// Round-off is larger than the tolerance; or leaves no digit of the momentum.
+TEST(Failure, BeyondDouble) {
+  GeodesicOptions options;
+  options.tolerance = 1e-22;
+  EXPECT_EQ(reason_of(test::sideways(), options), Reason::kBeyondDouble);
+  options.guess = kSidewaysP0;
+  EXPECT_EQ(reason_of(test::sideways(), options), Reason::kBeyondDouble);
+  options = {};
+  const BoundaryValueProblem near = test::vehicle({0, 0, 0, 0}, {0, 1e-16, 0, 0});
+  EXPECT_EQ(reason_of(near, options), Reason::kBeyondDouble);
+}
+
+TEST(Failure, NamesDiffer) {
+  std::set<std::string> names;
+  const auto last = static_cast<int>(Reason::kTooLong);
+  for (int i = 0; i <= last; ++i) names.insert(name_of(static_cast<Reason>(i)));
+  EXPECT_EQ(names.size(), static_cast<std::size_t>(last + 1));
+}
+
+}  // namespace
+}  // namespace carnot
