@@ -6,12 +6,11 @@
 #include <random>
 
 #include "carnot/parallel.h"
+#include "carnot/shooting/end_point.h"
 #include "carnot/shooting/knots.h"
 
 namespace carnot {
 namespace {
-
-constexpr long kSteps = 16;  // enough to see where a trajectory goes
 
 struct Draw {
   std::vector<double> p;
@@ -39,24 +38,37 @@ std::vector<double> draw_momentum(const BoundaryValueProblem& problem,
   return p;
 }
 
-Draw draw(const BoundaryValueProblem& problem, const SweepOptions& options, int i) {
+std::vector<double> draw(const BoundaryValueProblem& problem, const SweepOptions& options, int i) {
   std::seed_seq sequence{options.seed,
                          options.seed >> 32U,
                          static_cast<std::uint64_t>(options.round),
                          static_cast<std::uint64_t>(i)};
   std::mt19937_64 random(sequence);
-  Draw result{draw_momentum(problem, options, random)};
-  if (result.p.empty()) return result;
-  std::vector<double> z = problem.from;
-  z.insert(z.end(), result.p.begin(), result.p.end());
-  const StepPlan plan = StepPlan::equal(0, problem.time, kSteps);
-  if (!problem.segment.flow(plan, z.data()).completed()) return result;
-  double miss = 0;
-  for (int j = 0; j < problem.segment.dof; ++j) {
-    miss = std::max(miss, std::abs(z[j] - problem.to[j]));
+  return draw_momentum(problem, options, random);
+}
+
+// Runs all of them at once and sets `miss`: infinite where the flow fails.
+void run(const BoundaryValueProblem& problem, int threads, std::vector<Draw>& draws) {
+  constexpr double kTolerance = 1e-4;  // only the order of the misses counts
+  constexpr long kSteps = 16;          // enough to see where a trajectory goes
+  const Segment& segment = problem.segment;
+  const int n = segment.dof;
+  const auto count = static_cast<int>(draws.size());
+  std::vector<double> z;
+  z.reserve(draws.size() * 2 * n);
+  for (const Draw& draw : draws) {
+    z.insert(z.end(), problem.from.begin(), problem.from.end());
+    z.insert(z.end(), draw.p.begin(), draw.p.end());
   }
-  if (std::isfinite(miss)) result.miss = miss;
-  return result;
+  (void)(segment.has_adaptive_batch()
+             ? segment.adaptive_batch(0, problem.time, kTolerance, count, z.data(), threads)
+             : segment.flow_batch(
+                   StepPlan::equal(0, problem.time, kSteps), count, z.data(), threads));
+  for (int i = 0; i < count; ++i) {
+    const double miss =
+        largest_difference(&z[static_cast<std::size_t>(i) * 2 * n], problem.to.data(), n);
+    if (std::isfinite(miss)) draws[i].miss = miss;
+  }
 }
 
 // The trajectory from p with its end pulled to the target, and its multipliers.
@@ -92,7 +104,9 @@ std::vector<Path> near_hits(const BoundaryValueProblem& problem,
                             const SweepOptions& options,
                             int threads) {
   std::vector<Draw> draws(options.flows);
-  parallel_for(options.flows, threads, [&](int i) { draws[i] = draw(problem, options, i); });
+  parallel_for(options.flows, threads, [&](int i) { draws[i].p = draw(problem, options, i); });
+  std::erase_if(draws, [](const Draw& draw) { return draw.p.empty(); });
+  run(problem, threads, draws);
   std::stable_sort(
       draws.begin(), draws.end(), [](const Draw& a, const Draw& b) { return a.miss < b.miss; });
   const auto kept = std::min<std::size_t>(options.keep, draws.size());
