@@ -79,6 +79,14 @@ TEST(ConjugateTimes, LeaveTheCorankOfAnAbnormalExtremalOut) {
   EXPECT_TRUE(result.times.empty());
 }
 
+// The directions that a short path hardly moves in look like those that an abnormal one does not.
+TEST(ConjugateTimes, AreUnknownWhereAKernelMayBeASmallNumber) {
+  const BoundaryValueProblem problem = test::vehicle({0, 0, 0, 0}, {0, 0, 0, 1e-3});
+  const ConjugateTimes result = times_of(problem, {0, 0, 0, 1e-3}, 1);
+  EXPECT_FALSE(result.known);
+  EXPECT_EQ(result.corank, std::nullopt);
+}
+
 // Growth of the tangent flow (here 1e9) makes dq(T)/dp0 look singular; its plane does not.
 TEST(ConjugateTimes, StraightAheadHasNone) {
   const BoundaryValueProblem problem = test::vehicle({0, 0, 0, 0}, {20, 0, 0, 0});

@@ -109,6 +109,19 @@ TEST(Geodesic, SteeringInPlaceIsAbnormalAndSolved) {
   EXPECT_EQ(report.geodesics[0].label, Label::kLocallyMinimal);
 }
 
+// Sideways by a the action grows like a^(2/3) as a -> 0. By 1e-10 double can't tell dq/dp0 from a
+// singular matrix, and the label says so.
+TEST(Geodesic, ShortPathsAreSolvedAndNotMislabelled) {
+  const GeodesicReport far = find(test::vehicle({0, 0, 0, 0}, {0, 1e-7, 0, 0}));
+  const GeodesicReport near = find(test::vehicle({0, 0, 0, 0}, {0, 1e-10, 0, 0}));
+  ASSERT_EQ(far.status, GeodesicStatus::kConverged) << far.message;
+  ASSERT_EQ(near.status, GeodesicStatus::kConverged) << near.message;
+  EXPECT_EQ(far.geodesics[0].label, Label::kLocallyMinimal);
+  EXPECT_EQ(near.geodesics[0].label, Label::kUnknown);
+  EXPECT_EQ(near.geodesics[0].abnormal, std::nullopt);
+  EXPECT_NEAR(near.geodesics[0].action / far.geodesics[0].action, 1e-2, 1e-6);
+}
+
 TEST(Geodesic, HeisenbergGroupClosedForm) {
   // The dido problem: a full circle that encloses area z has length 2 sqrt(pi z).
   const GeodesicReport report = find(test::heisenberg_group({0.5, 0, 2}));

@@ -1,6 +1,7 @@
 #include "carnot/shooting/conjugate_times.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -152,6 +153,20 @@ std::optional<Graph> graph_before_half(const BoundaryValueProblem& problem,
   return graph;
 }
 
+// Whether a kernel that shows itself along the path can be told from small numbers. On a path of
+// extent d directions that take s brackets move by d^(2s - 2) only; five brackets and d = 0.05 are
+// still above round-off.
+bool tells_kernels(const Knots& knots) {
+  constexpr double kLeastExtent = 0.05;
+  double extent = 0;
+  for (int i = 1; i <= knots.segments; ++i) {
+    for (int k = 0; k < knots.dof; ++k) {
+      extent = std::max(extent, std::abs(knots.at(i)[k] - knots.at(0)[k]));
+    }
+  }
+  return extent >= kLeastExtent;
+}
+
 // One pass at a given number of steps.
 ConjugateTimes follow(const BoundaryValueProblem& problem,
                       const Knots& knots,
@@ -160,7 +175,7 @@ ConjugateTimes follow(const BoundaryValueProblem& problem,
   const int n = problem.segment.dof;
   ConjugateTimes result;
   const std::optional<Graph> graph = graph_before_half(problem, knots, steps);
-  if (!graph) return result;
+  if (!graph || (graph->kernel > 0 && !tells_kernels(knots))) return result;
   result.corank = graph->kernel;
   if (graph->kernel == n) return result;
   const Planes planes(problem.segment, graph->balance, graph->kernel);
