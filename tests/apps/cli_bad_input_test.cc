@@ -3,16 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <sstream>
 
 #include "command.h"
 
-namespace carnot::apps {
+namespace carnot::apps::cli_bad_input_test {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 struct BadInput {
   std::string line;      // words separated by blanks; '' is an empty word
@@ -36,13 +34,7 @@ TEST_P(BadInputTest, IsRefusedInOneLine) {
     SCOPED_TRACE("carnot " + line);
     const Sandbox sandbox;
     std::filesystem::create_directory(sandbox.directory() / "d.json");
-    const Outcome outcome = sandbox.run(words(line));
-    EXPECT_EQ(outcome.status, 2);
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-    EXPECT_TRUE(outcome.err.starts_with("carnot: ") && outcome.err.ends_with('\n')) << outcome.err;
-    EXPECT_THAT(outcome.err, HasSubstr(expected));
-    EXPECT_THAT(sandbox.files(), ::testing::ElementsAre("d.json"));
+    expect_refused(words(line), HasSubstr(expected), sandbox);
   }
 }
 
@@ -218,11 +210,8 @@ INSTANTIATE_TEST_SUITE_P(Cli,
                          name_of);
 
 TEST(BadInput, WithLineBreaksStillMakesOneLine) {
-  const Outcome outcome = run({"flow", "vehicle", "--from", "1\n2\x1b"});
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
-  EXPECT_THAT(outcome.err, HasSubstr("'1\\n2\\x1b'"));
+  expect_refused({"flow", "vehicle", "--from", "1\n2\x1b"}, HasSubstr("'1\\n2\\x1b'"));
 }
 
 }  // namespace
-}  // namespace carnot::apps
+}  // namespace carnot::apps::cli_bad_input_test

@@ -1,13 +1,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <map>
 #include <set>
 
 #include "command.h"
 
-namespace carnot::apps {
+namespace carnot::apps::cli_benchmark_boundary_test {
 namespace {
 
 using ::testing::AllOf;
@@ -15,12 +14,8 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::UnorderedElementsAre;
 
-using Words = std::vector<std::string>;
-
-Words few(Words more) {
-  Words words{"benchmark", "--boundary-value", "--starts", "1", "--targets", "1"};
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
+Words few(const Words& more) {
+  return with({"benchmark", "--boundary-value", "--starts", "1", "--targets", "1"}, more);
 }
 
 TEST(BoundaryBenchmark, HoldsItsContract) {
@@ -115,15 +110,7 @@ TEST(BoundaryBenchmark, RefusesBadInput) {
       {{"benchmark", "--boundary-value", "--targets", "x"}, "--targets 'x'"},
       {{"benchmark", "--boundary-value", "--output", "x.csv"}, "--output"},
       {{"benchmark", "--seed", "3"}, "--boundary-value"}};
-  for (const auto& [arguments, message] : cases) {
-    const Sandbox sandbox;
-    const Outcome outcome = sandbox.run(arguments);
-    EXPECT_EQ(outcome.status, 2) << outcome.err;
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_THAT(outcome.err, HasSubstr(message));
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
-    EXPECT_THAT(sandbox.files(), ElementsAre());
-  }
+  for (const auto& [arguments, message] : cases) expect_refused(arguments, HasSubstr(message));
 }
 
 #ifdef CARNOT_PEERS
@@ -147,4 +134,4 @@ TEST(BoundaryBenchmark, RunsPeers) {
 #endif
 
 }  // namespace
-}  // namespace carnot::apps
+}  // namespace carnot::apps::cli_benchmark_boundary_test

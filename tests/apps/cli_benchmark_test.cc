@@ -1,13 +1,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <map>
 #include <set>
 
 #include "command.h"
 
-namespace carnot::apps {
+namespace carnot::apps::cli_benchmark_test {
 namespace {
 
 using ::testing::AllOf;
@@ -95,15 +94,7 @@ TEST(Benchmark, RefusesBadInput) {
       {{"benchmark", "vehicle", "vehicle"}, "given twice"},
       {{"benchmark", "--plot", "speed.txt"}, "--plot"},
       {{"benchmark", "--output", "speed.csv"}, "--output"}};
-  for (const auto& [arguments, message] : cases) {
-    const Sandbox sandbox;
-    const Outcome outcome = sandbox.run(arguments);
-    EXPECT_EQ(outcome.status, 2) << outcome.err;
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_THAT(outcome.err, HasSubstr(message));
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
-    EXPECT_THAT(sandbox.files(), ElementsAre());
-  }
+  for (const auto& [arguments, message] : cases) expect_refused(arguments, HasSubstr(message));
 }
 
 #ifdef CARNOT_PEERS
@@ -128,12 +119,10 @@ TEST(Benchmark, RunsPeers) {
 }
 #else
 TEST(Benchmark, SaysHowToGetPeers) {
-  const Outcome outcome = run({"benchmark", "--peers"});
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_EQ(outcome.out, "");
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("--peers"), HasSubstr("-D CARNOT_PEERS=ON")));
+  expect_refused({"benchmark", "--peers"},
+                 AllOf(HasSubstr("--peers"), HasSubstr("-D CARNOT_PEERS=ON")));
 }
 #endif
 
 }  // namespace
-}  // namespace carnot::apps
+}  // namespace carnot::apps::cli_benchmark_test

@@ -5,7 +5,7 @@
 
 #include "command.h"
 
-namespace carnot::apps {
+namespace carnot::apps::cli_continue_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -13,28 +13,23 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
 
-using Words = std::vector<std::string>;
-
 Words unicycle(const Words& more) {
-  Words words{"continue", "unicycle", "--from", "0,0,0", "--to", "1,1,0"};
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
+  return with({"continue", "unicycle", "--from", "0,0,0", "--to", "1,1,0"}, more);
 }
 
 // To a target where the extremal of second least action has a fold on the way down.
 Words folding(const Words& more) {
-  Words words{"continue",
-              "heisenberg-group",
-              "--from",
-              "0,0,0",
-              "--to",
-              "0.5,0,0.5",
-              "--rank",
-              "2",
-              "--along",
-              "to=0.5,0,0"};
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
+  return with({"continue",
+               "heisenberg-group",
+               "--from",
+               "0,0,0",
+               "--to",
+               "0.5,0,0.5",
+               "--rank",
+               "2",
+               "--along",
+               "to=0.5,0,0"},
+              more);
 }
 
 TEST(ContinueCommand, KeepsTheContract) {
@@ -192,15 +187,7 @@ TEST(ContinueCommand, BadInputIsOneLine) {
       {{"continue", "unicycle", "--to", "1,0,0", "--along", "time=2"}, "--from"},
       {{"continue", "rod-skate", "--from", "0,0,1,0", "--to", "1,0,2,0", "--along", "time=2"},
        "holonomic"}};
-  for (const auto& [words, what] : cases) {
-    const Sandbox sandbox;
-    const Outcome outcome = sandbox.run(words);
-    EXPECT_EQ(outcome.status, 2) << what;
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_THAT(outcome.err, HasSubstr(what));
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-    EXPECT_THAT(sandbox.files(), IsEmpty());
-  }
+  for (const auto& [words, what] : cases) expect_refused(words, HasSubstr(what));
 }
 
 TEST(ContinueCommand, CanBeInterrupted) {
@@ -220,10 +207,10 @@ TEST(ContinueCommand, CanBeInterrupted) {
                                        "--output",
                                        "curve.json",
                                        "--quiet"},
-                                      "timeout --preserve-status -k 10 -s INT 0.5");
+                                      stopped_after("0.5"));
   EXPECT_EQ(outcome.status, 130);
   EXPECT_THAT(sandbox.files(), IsEmpty());
 }
 
 }  // namespace
-}  // namespace carnot::apps
+}  // namespace carnot::apps::cli_continue_test

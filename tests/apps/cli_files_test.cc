@@ -6,15 +6,13 @@
 
 #include "command.h"
 
-namespace carnot::apps {
+namespace carnot::apps::cli_files_test {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
-
-using Words = std::vector<std::string>;
 
 const Words kFlow{"flow",
                   "vehicle",
@@ -28,11 +26,6 @@ const Words kFlow{"flow",
                   "10",
                   "--samples",
                   "6"};
-
-Words with(Words words, const Words& more) {
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
-}
 
 TEST(Files, JsonEqualsStdout) {
   const Sandbox sandbox;
@@ -95,8 +88,7 @@ class Interrupts : public ::testing::TestWithParam<std::pair<std::string, Words>
 TEST_P(Interrupts, StopCleanly) {
   const auto& [signal, more] = GetParam();
   const Sandbox sandbox;
-  const Outcome outcome =
-      sandbox.run(with(kLong, more), "timeout --preserve-status -k 10 -s " + signal + " 0.5");
+  const Outcome outcome = sandbox.run(with(kLong, more), stopped_after("0.5", signal));
   EXPECT_EQ(outcome.status, 130);
   EXPECT_EQ(outcome.out, "");
   EXPECT_EQ(outcome.err, "carnot: interrupted\n");
@@ -124,10 +116,10 @@ TEST(Interrupts, StopTheChoiceOfSteps) {
                                        "1e-9",
                                        "--output",
                                        "a.json"},
-                                      "timeout --preserve-status -k 10 -s INT 0.5");
+                                      stopped_after("0.5"));
   EXPECT_EQ(outcome.status, 130);
   EXPECT_THAT(sandbox.files(), IsEmpty());
 }
 
 }  // namespace
-}  // namespace carnot::apps
+}  // namespace carnot::apps::cli_files_test

@@ -1,14 +1,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <sstream>
 
 #include "command.h"
 #include "version.h"
 
-namespace carnot::apps {
+namespace carnot::apps::cli_flow_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -16,15 +15,8 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
 
-using Words = std::vector<std::string>;
-
 const Words kStraight{
     "flow", "vehicle", "--from", "0,0,0,0", "--momentum", "1,0,0,0", "--time", "5"};
-
-Words with(Words words, const Words& more) {
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
-}
 
 TEST(FlowCommand, DrivesStraightExactly) {
   const Words words = with(kStraight, {"--steps", "10", "--json"});
@@ -196,4 +188,4 @@ TEST(FlowCommand, PrintsForPeopleToo) {
 }
 
 }  // namespace
-}  // namespace carnot::apps
+}  // namespace carnot::apps::cli_flow_test

@@ -5,19 +5,15 @@
 
 #include "command.h"
 
-namespace carnot::apps {
+namespace carnot::apps::cli_geodesic_test {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-using Words = std::vector<std::string>;
-
 Words parking(const Words& more) {
-  Words words{"geodesic", "vehicle", "--from", "0,0,0,0", "--to", "0,1,0,0"};
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
+  return with({"geodesic", "vehicle", "--from", "0,0,0,0", "--to", "0,1,0,0"}, more);
 }
 
 TEST(GeodesicCommand, KeepsTheContract) {
@@ -170,4 +166,4 @@ TEST(GeodesicCommand, WritesFiles) {
 }
 
 }  // namespace
-}  // namespace carnot::apps
+}  // namespace carnot::apps::cli_geodesic_test

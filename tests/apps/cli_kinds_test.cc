@@ -7,22 +7,17 @@
 
 #include "command.h"
 
-namespace carnot::apps {
+namespace carnot::apps::cli_kinds_test {
 namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-
-using Words = std::vector<std::string>;
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 Words appell(const Words& more) {
-  Words words{"flow", "appell", "--from", "0,0,0", "--momentum", "1.2,0.5,0.7"};
-  words.insert(words.end(), {"--time", "2", "--steps", "20", "--json"});
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
+  const Words words{"flow", "appell", "--from", "0,0,0", "--momentum", "1.2,0.5,0.7"};
+  return with(with(words, {"--time", "2", "--steps", "20", "--json"}), more);
 }
 
 TEST(LagrangianScenes, LambdaPicksTheBranchAndTheFlowKeepsIt) {
@@ -143,21 +138,14 @@ TEST(HolonomicScenes, RattleIsTheirMethod) {
 TEST(HolonomicScenes, BadInputIsRefused) {
   const Words flow{"flow", "rod-skate", "--time", "1", "--steps", "5"};
   const auto refused = [&](const Words& more, const std::string& option) {
-    Words words = flow;
-    words.insert(words.end(), more.begin(), more.end());
-    const Outcome outcome = run(words);
-    EXPECT_EQ(outcome.status, 2) << option;
-    EXPECT_THAT(outcome.out, IsEmpty());
-    EXPECT_THAT(outcome.err, HasSubstr(option));
+    expect_refused(with(flow, more), HasSubstr(option));
   };
   refused({"--from", "0,0,1.1,0", "--momentum", "0,0,0,0"}, "--from");
   refused({"--from", "0,0,1,0", "--momentum", "0,0,1,0"}, "--momentum");
   refused({"--from", "0,0,1,0", "--velocity", "0,0,1,0"}, "--velocity");
   refused({"--from", "0,0,1,0", "--momentum", "0,0,0,0", "--method", "gauss16"}, "--method");
-  const Outcome outcome =
-      run({"geodesic", "rod-skate", "--from", "0,0,1,0", "--to", "0,0,1.001,0"});
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("--to"), HasSubstr("holonomic")));
+  expect_refused({"geodesic", "rod-skate", "--from", "0,0,1,0", "--to", "0,0,1.001,0"},
+                 AllOf(HasSubstr("--to"), HasSubstr("holonomic")));
 }
 
 TEST(HolonomicScenes, GeodesicsAreFound) {
@@ -177,4 +165,4 @@ TEST(HolonomicScenes, GeodesicsAreFound) {
 }
 
 }  // namespace
-}  // namespace carnot::apps
+}  // namespace carnot::apps::cli_kinds_test

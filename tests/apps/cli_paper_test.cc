@@ -2,12 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <set>
 
 #include "command.h"
 
-namespace carnot::apps {
+namespace carnot::apps::cli_paper_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -88,18 +87,12 @@ TEST(PaperCommand, HasHelp) {
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("Examples"), HasSubstr("Exit status")));
 }
 
-// One line that names the option and the value, and nothing is written.
 void expect_refusal(const Sandbox& sandbox, const std::string& directory, const std::string& why) {
-  const std::vector<std::string> before = sandbox.files();
-  const Outcome outcome = sandbox.run({"paper", "--output", directory});
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_EQ(outcome.out, "");
-  EXPECT_THAT(outcome.err,
-              AllOf(HasSubstr("--output '" + directory + "'"),
-                    HasSubstr(why),
-                    HasSubstr("accepted: a directory")));
-  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
-  EXPECT_EQ(sandbox.files(), before);
+  expect_refused({"paper", "--output", directory},
+                 AllOf(HasSubstr("--output '" + directory + "'"),
+                       HasSubstr(why),
+                       HasSubstr("accepted: a directory")),
+                 sandbox);
 }
 
 TEST(PaperCommand, RefusesAPlaceThatIsNoDirectory) {
@@ -125,9 +118,7 @@ TEST(PaperCommand, RefusesADirectoryItMayNotWriteIn) {
 TEST(PaperCommand, LeavesNothingWhenInterrupted) {
   for (const char* delay : {"0.5", "2.5"}) {  // in the runs; among the figures, perhaps
     const Sandbox sandbox;
-    const Outcome outcome =
-        sandbox.run({"paper", "--output", "a/b"},
-                    std::string("timeout --preserve-status -k 20 -s INT ") + delay);
+    const Outcome outcome = sandbox.run({"paper", "--output", "a/b"}, stopped_after(delay));
     if (outcome.status == 0) continue;  // a fast machine was done
     EXPECT_EQ(outcome.status, 130);
     EXPECT_EQ(outcome.out, "");
@@ -146,4 +137,4 @@ TEST(PaperCommand, FailsWithoutGnuplot) {
 }
 
 }  // namespace
-}  // namespace carnot::apps
+}  // namespace carnot::apps::cli_paper_test

@@ -1,12 +1,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <map>
 
 #include "command.h"
 
-namespace carnot::apps {
+namespace carnot::apps::cli_stress_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -81,14 +80,8 @@ TEST(Stress, RefusesBadInput) {
       {{"stress", "unicycle", "--seed", "-1"}, "--seed"},
       {{"stress", "unicycle", "--set", "gamma=1"}, "--set"},
       {{"stress", "unicycle", "--output", "x.csv"}, "--output"}};
-  for (const auto& [arguments, message] : cases) {
-    const Outcome outcome = run(arguments);
-    EXPECT_EQ(outcome.status, 2) << outcome.err;
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_THAT(outcome.err, HasSubstr(message));
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
-  }
+  for (const auto& [arguments, message] : cases) expect_refused(arguments, HasSubstr(message));
 }
 
 }  // namespace
-}  // namespace carnot::apps
+}  // namespace carnot::apps::cli_stress_test

@@ -6,7 +6,7 @@
 #include "command.h"
 #include "version.h"
 
-namespace carnot::apps {
+namespace carnot::apps::cli_tables_test {
 namespace {
 
 using ::testing::AllOf;
@@ -126,4 +126,4 @@ TEST(Tables, GoToAFile) {
 }
 
 }  // namespace
-}  // namespace carnot::apps
+}  // namespace carnot::apps::cli_tables_test

@@ -1,13 +1,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <map>
 #include <set>
 
 #include "command.h"
 
-namespace carnot::apps {
+namespace carnot::apps::cli_verify_test {
 namespace {
 
 using ::testing::AllOf;
@@ -150,16 +149,8 @@ TEST(Verify, RefusesBadInput) {
       {{"verify", "heisenberg", "--steps", "10"}, "--steps"},
       {{"verify", "heisenberg", "--threads", "0"}, "--threads"},
       {{"verify", "heisenberg", "--output", "audit.csv"}, "--output"}};
-  for (const auto& [arguments, message] : cases) {
-    const Sandbox sandbox;
-    const Outcome outcome = sandbox.run(arguments);
-    EXPECT_EQ(outcome.status, 2) << outcome.err;
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_THAT(outcome.err, HasSubstr(message));
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
-    EXPECT_THAT(sandbox.files(), ElementsAre());
-  }
+  for (const auto& [arguments, message] : cases) expect_refused(arguments, HasSubstr(message));
 }
 
 }  // namespace
-}  // namespace carnot::apps
+}  // namespace carnot::apps::cli_verify_test

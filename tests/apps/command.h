@@ -1,9 +1,12 @@
 // Runs the built program as a user does: arguments in; exit status, stdout and stderr out.
 #pragma once
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -13,6 +16,8 @@
 #include <vector>
 
 namespace carnot::apps {
+
+using Words = std::vector<std::string>;
 
 struct Outcome {
   int status = -1;
@@ -77,7 +82,32 @@ class Sandbox {
   std::filesystem::path root_;
 };
 
-inline Outcome run(const std::vector<std::string>& arguments) { return Sandbox().run(arguments); }
+inline Outcome run(const Words& arguments) { return Sandbox().run(arguments); }
+
+inline Words with(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+// A prefix for Sandbox::run(): sends the signal after so many seconds.
+inline std::string stopped_after(const std::string& seconds, const std::string& signal = "INT") {
+  return "timeout --preserve-status -k 20 -s " + signal + " " + seconds;
+}
+
+// Bad input: exit status 2, one line on stderr, and nothing else is written.
+inline void expect_refused(const Words& arguments,
+                           const ::testing::Matcher<std::string>& message,
+                           const Sandbox& sandbox = {}) {
+  const Words before = sandbox.files();
+  const Outcome outcome = sandbox.run(arguments);
+  SCOPED_TRACE("carnot " + ::testing::PrintToString(arguments));
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  EXPECT_TRUE(outcome.err.starts_with("carnot: ") && outcome.err.ends_with('\n')) << outcome.err;
+  EXPECT_THAT(outcome.err, message);
+  EXPECT_EQ(sandbox.files(), before);
+}
 
 // The keys of an object, in order.
 inline std::vector<std::string> keys(const nlohmann::ordered_json& object) {
