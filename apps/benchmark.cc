@@ -79,7 +79,6 @@ Examples
 
 Exit status: 0 success, 1 a file or reference did not come about, 2 bad input, 130 interrupted.)";
 
-constexpr long kMostThreads = 1024;
 constexpr long kFewSteps = 1000;
 constexpr long kMostSteps = 1000000000;
 
@@ -176,12 +175,12 @@ BoundaryOptions check_boundary(const Options& options) {
   constexpr long kMost = 100000;
   BoundaryOptions checked;
   if (options.quick) checked.starts = checked.targets = 2;
-  const auto set = [](const char* name, const std::string& text, long most, int& value) {
-    if (!text.empty()) value = static_cast<int>(parse_integer(name, text, 1, most));
+  const auto set = [](const char* name, const std::string& text, int& value) {
+    if (!text.empty()) value = static_cast<int>(parse_integer(name, text, 1, kMost));
   };
-  set("--starts", options.starts, kMost, checked.starts);
-  set("--targets", options.targets, kMost, checked.targets);
-  set("--threads", options.threads, kMostThreads, checked.threads);
+  set("--starts", options.starts, checked.starts);
+  set("--targets", options.targets, checked.targets);
+  checked.threads = parse_threads(options.threads);
   if (!options.seed.empty()) checked.seed = parse_seed("--seed", options.seed);
   return checked;
 }
@@ -270,10 +269,7 @@ EnergyOptions check_energy(const Options& options) {
   if (!options.steps.empty()) {
     checked.steps = parse_integer("--steps", options.steps, kFewSteps, kMostSteps);
   }
-  if (!options.threads.empty()) {
-    checked.threads =
-        static_cast<int>(parse_integer("--threads", options.threads, 1, kMostThreads));
-  }
+  checked.threads = parse_threads(options.threads);
   return checked;
 }
 

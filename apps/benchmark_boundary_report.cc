@@ -13,7 +13,7 @@ namespace {
 
 using Cells = std::vector<std::vector<std::string>>;
 
-const char* name_of(BoundaryStart start) {
+const char* start_name(BoundaryStart start) {
   return start == BoundaryStart::kPath ? "path" : "momentum";
 }
 
@@ -36,7 +36,7 @@ Cells solver_table(const BoundaryResult& result, const std::string& scene) {
     if (row.scene != scene) continue;
     const auto each = seconds_per_success(row);
     cells.push_back({row.solver + (row.verified ? "" : " (grid)"),
-                     name_of(row.start),
+                     start_name(row.start),
                      fmt::format("{:.0f} %", 100.0 * row.solved / row.starts),
                      milliseconds(row.cpu_seconds / row.starts),
                      each ? milliseconds(*each) : "-",
@@ -99,7 +99,7 @@ void add_boundary_json(const BoundaryResult& result, Json& json) {
   for (const BoundaryRow& row : result.rows) {
     rows.push_back({{"scene", row.scene},
                     {"solver", row.solver},
-                    {"start", name_of(row.start)},
+                    {"start", start_name(row.start)},
                     {"peer", row.peer},
                     {"verified", row.verified},
                     {"starts", row.starts},

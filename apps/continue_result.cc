@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "carnot/plots/curve.h"
-#include "geodesic_result.h"
+#include "geodesic_text.h"
 #include "text_table.h"
 
 namespace carnot::apps {
@@ -44,18 +44,11 @@ Json value_json(const Along& along, const std::vector<double>& value) {
 
 Json point_json(const Along& along, const ContinuationPoint& point) {
   const Geodesic& geodesic = point.geodesic;
-  const bool single = geodesic.verification == Verification::kSingle;
   Json json;
   json["branch"] = point.branch;
   json["s"] = point.s;
   json["value"] = value_json(along, along.value(point.s));
-  json["p0"] = geodesic.p0;
-  json["lambda0"] = geodesic.lambda0;
-  json["action"] = geodesic.action;
-  json["length"] = or_null(geodesic.length);
-  json["verification"] = single ? "single" : "knots";
-  json["endpoint_error"] = single ? Json(geodesic.endpoint_error) : Json(nullptr);
-  json["knot_defect"] = single ? Json(nullptr) : Json(geodesic.knot_defect);
+  add_extremal(geodesic, json);
   json["morse_index"] = or_null(geodesic.morse_index);
   json["label"] = name_of(geodesic.label);
   return json;
@@ -83,13 +76,8 @@ Json report_json(const ContinueRequest& request,
   for (const ContinuationPoint& point : report.points) points.push_back(point_json(along, point));
   Json branches = Json::array();
   for (const ContinuationStatus end : report.branch_ends) branches.push_back(status_name(end));
-  Json json = result_head(arguments);
-  json["scene"] = request.run.entry->info.name;
-  json["parameters"] = parameters_json(request.run);
-  json["from"] = request.ends.from;
-  json["to"] = request.ends.to;
-  json["time"] = request.ends.time;
-  json["method"] = request.run.method.name;
+  const auto& [from, to, time] = request.ends;
+  Json json = problem_json(arguments, request.run, from, to, time);
   json["along"] = {{"name", along.name},
                    {"start", value_json(along, along.start)},
                    {"end", value_json(along, along.end)}};
@@ -144,17 +132,11 @@ std::string value_text(const Along& along, double s, int digits) {
 }
 
 std::vector<std::string> point_row(const Along& along, const ContinuationPoint& point) {
-  const Geodesic& geodesic = point.geodesic;
-  const bool single = geodesic.verification == Verification::kSingle;
-  const double error = single ? geodesic.endpoint_error : geodesic.knot_defect;
-  return {std::to_string(point.branch),
-          text_number(point.s),
-          value_text(along, point.s, 6),
-          text_number(geodesic.action, 10),
-          geodesic.length ? text_number(*geodesic.length, 10) : "-",
-          text_number(error, 2) + (single ? "" : " (knots)"),
-          name_of(geodesic.label),
-          text_vector(geodesic.p0, 8)};
+  std::vector<std::string> row = geodesic_cells(point.geodesic);
+  row.insert(row.begin(),
+             {std::to_string(point.branch), text_number(point.s), value_text(along, point.s, 6)});
+  row.push_back(text_vector(point.geodesic.p0, 8));
+  return row;
 }
 
 std::string table(const Along& along, const ContinuationReport& report) {
@@ -203,10 +185,7 @@ std::string report_text(const ContinueRequest& request, const ContinuationReport
   }
   text += fmt::format("{}, {:.3g} seconds\n", run.method.name, report.elapsed_seconds);
   if (!report.message.empty()) text += report.message + '\n';
-  for (const std::string& file : {run.destination.plot, run.destination.output}) {
-    if (!file.empty()) text += "written: " + file + '\n';
-  }
-  return text;
+  return text + written_text(run.destination);
 }
 
 }  // namespace

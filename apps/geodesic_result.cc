@@ -6,21 +6,15 @@
 
 #include "carnot/plots/figure.h"
 #include "csv_text.h"
+#include "geodesic_text.h"
 #include "text_table.h"
 
 namespace carnot::apps {
 namespace {
 
 Json geodesic_json(const Geodesic& geodesic, std::size_t rank, bool with_trajectory) {
-  const bool single = geodesic.verification == Verification::kSingle;
   Json json;
-  json["p0"] = geodesic.p0;
-  json["lambda0"] = geodesic.lambda0;
-  json["action"] = geodesic.action;
-  json["length"] = or_null(geodesic.length);
-  json["verification"] = single ? "single" : "knots";
-  json["endpoint_error"] = single ? Json(geodesic.endpoint_error) : Json(nullptr);
-  json["knot_defect"] = single ? Json(nullptr) : Json(geodesic.knot_defect);
+  add_extremal(geodesic, json);
   json["constraint_error"] = geodesic.constraint_error;
   json["energy_drift"] = geodesic.energy_drift;
   json["conjugate_times"] = or_null(geodesic.conjugate_times);
@@ -44,13 +38,7 @@ Json report_json(const GeodesicRequest& request,
   for (const Geodesic& geodesic : report.geodesics) {
     geodesics.push_back(geodesic_json(geodesic, geodesics.size() + 1, !run.no_trajectory));
   }
-  Json json = result_head(arguments);
-  json["scene"] = run.entry->info.name;
-  json["parameters"] = parameters_json(run);
-  json["from"] = request.from;
-  json["to"] = request.to;
-  json["time"] = request.time;
-  json["method"] = run.method.name;
+  Json json = problem_json(arguments, run, request.from, request.to, request.time);
   json["status"] = report.status == GeodesicStatus::kConverged ? "converged" : "not_converged";
   const bool found = report.reason == Reason::kNone;
   json["reason"] = found ? Json(nullptr) : Json(name_of(report.reason));
@@ -81,13 +69,8 @@ std::vector<std::string> header_row(const SceneInfo& info) {
 std::vector<std::string> geodesic_row(const Geodesic& geodesic,
                                       const SceneInfo& info,
                                       std::size_t rank) {
-  const bool single = geodesic.verification == Verification::kSingle;
-  const double error = single ? geodesic.endpoint_error : geodesic.knot_defect;
-  std::vector<std::string> row{std::to_string(rank),
-                               text_number(geodesic.action, 10),
-                               geodesic.length ? text_number(*geodesic.length, 10) : "-",
-                               text_number(error, 2) + (single ? "" : " (knots)"),
-                               name_of(geodesic.label)};
+  std::vector<std::string> row = geodesic_cells(geodesic);
+  row.insert(row.begin(), std::to_string(rank));
   for (const Extreme& extreme : info.extremes) {
     std::string text = "-";
     for (const auto& [name, value] : geodesic.extremes) {
@@ -128,9 +111,7 @@ std::string report_text(const GeodesicRequest& request, const GeodesicReport& re
                       run.method.name,
                       report.elapsed_seconds);
   if (!report.message.empty()) text += report.message + '\n';
-  for (const std::string& file : {run.destination.plot, run.destination.output}) {
-    if (found > 0 && !file.empty()) text += "written: " + file + '\n';
-  }
+  if (found > 0) text += written_text(run.destination);
   return text;
 }
 
@@ -147,20 +128,6 @@ std::vector<plots::Curve> curves(const GeodesicReport& report) {
 }
 
 }  // namespace
-
-const char* name_of(Label label) {
-  switch (label) {
-    case Label::kLocallyMinimal:
-      return "locally-minimal";
-    case Label::kConjugatePassed:
-      return "conjugate-passed";
-    case Label::kSingular:
-      return "singular";
-    case Label::kUnknown:
-      return "unknown";
-  }
-  return "unknown";
-}
 
 Result geodesic_result(const GeodesicRequest& request,
                        const GeodesicReport& report,

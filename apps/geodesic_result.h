@@ -18,9 +18,6 @@ struct GeodesicRequest {
   GeodesicOptions options;
 };
 
-// "locally-minimal" and so on.
-const char* name_of(Label label);
-
 Result geodesic_result(const GeodesicRequest& request,
                        const GeodesicReport& report,
                        const std::vector<std::string>& arguments);

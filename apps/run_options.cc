@@ -13,7 +13,6 @@ namespace carnot::apps {
 namespace {
 
 constexpr long kMostSamples = 1000000;
-constexpr long kMostThreads = 1024;
 
 plots::Figure find_figure(const std::string& name) {
   const std::map<std::string, plots::Figure> figures{{"automatic", plots::Figure::kAutomatic},
@@ -91,6 +90,11 @@ void check_table_output(const Destination& destination) {
   if (!destination.output.empty()) check_output_file("--output", destination.output, {".json"});
 }
 
+int parse_threads(const std::string& text) {
+  constexpr long kMostThreads = 1024;
+  return text.empty() ? 0 : static_cast<int>(parse_integer("--threads", text, 1, kMostThreads));
+}
+
 Run check(const RunOptions& options) {
   Run run;
   run.entry = &find_scene(options.scene);
@@ -98,9 +102,7 @@ Run check(const RunOptions& options) {
   run.method = choose_method(options.method, options.holonomic_default, *run.entry);
   run.samples = parse_integer("--samples", options.samples, 2, kMostSamples);
   run.seed = parse_seed("--seed", options.seed);
-  if (!options.threads.empty()) {
-    run.threads = static_cast<int>(parse_integer("--threads", options.threads, 1, kMostThreads));
-  }
+  run.threads = parse_threads(options.threads);
   run.no_trajectory = options.no_trajectory;
   run.destination = options.destination;
   run.destination.figure = find_figure(options.destination.figure_name);

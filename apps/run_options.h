@@ -62,6 +62,9 @@ void add_result_options(CLI::App& app, Destination& destination);
 void add_table_options(CLI::App& app, Destination& destination);
 void check_table_output(const Destination& destination);
 
+// The value of --threads; 0, all cores, where it is not given. Throws std::invalid_argument.
+int parse_threads(const std::string& text);
+
 // Throws std::invalid_argument.
 Run check(const RunOptions& options);
 

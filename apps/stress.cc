@@ -10,7 +10,7 @@
 #include "carnot/parallel.h"
 #include "carnot/shooting/geodesic.h"
 #include "delivery.h"
-#include "geodesic_result.h"
+#include "geodesic_text.h"
 #include "method_table.h"
 #include "numbers.h"
 #include "progress_bar.h"
@@ -157,7 +157,6 @@ std::string stress_text(const Json& json) {
 
 int run_stress(const Options& options, const std::vector<std::string>& arguments) {
   constexpr long kMostTargets = 10000000;
-  constexpr long kMostThreads = 1024;
   const auto begin = std::chrono::steady_clock::now();
   const SceneEntry& entry = find_scene(options.scene);
   const ParameterValues parameters = parse_parameters(entry, options.set);
@@ -165,10 +164,7 @@ int run_stress(const Options& options, const std::vector<std::string>& arguments
   const auto targets =
       static_cast<int>(parse_integer("--targets", options.targets, 1, kMostTargets));
   const std::uint64_t seed = parse_seed("--seed", options.seed);
-  int threads = 0;
-  if (!options.threads.empty()) {
-    threads = static_cast<int>(parse_integer("--threads", options.threads, 1, kMostThreads));
-  }
+  const int threads = parse_threads(options.threads);
   check_table_output(options.destination);
   if (entry.holonomic > 0) {
     refuse("SCENE", options.scene, "random targets miss its manifold", "scenes without h(q) = 0");

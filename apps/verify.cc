@@ -195,15 +195,11 @@ Result verify_result(const std::vector<Scene>& scenes,
 }
 
 int run_verify(const Options& options, const std::vector<std::string>& arguments) {
-  constexpr long kMostThreads = 1024;
   const auto begin = std::chrono::steady_clock::now();
   check_table_output(options.destination);
   const auto named = check_methods(options.methods);
   std::vector<Scene> scenes = check_scenes(options);
-  int threads = 0;
-  if (!options.threads.empty()) {
-    threads = static_cast<int>(parse_integer("--threads", options.threads, 1, kMostThreads));
-  }
+  const int threads = parse_threads(options.threads);
   const std::vector<Task> tasks = all_tasks(scenes, named);
   if (tasks.empty()) {
     refuse("--method", options.methods, "no scene suits it", "methods that suit the scenes");
