@@ -8,9 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
-#include <numbers>
 
 #include "carnot/plots/figure.h"
 #include "text_table.h"
@@ -18,8 +16,6 @@
 namespace carnot::apps {
 namespace {
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
-constexpr double kPi = std::numbers::pi;
 constexpr double kSpeed = 1;  // c = a l
 
 // For people: without the round-off that stands for 0.
@@ -37,7 +33,7 @@ std::vector<double> momenta(const Segment& segment, const std::vector<double>& l
   return p;
 }
 
-void add_momenta(const Segment& segment, PaperPart& part) {
+void add_circle_momenta(const Segment& segment, PaperPart& part) {
   const std::vector<double> right{0, 0, 2, 1};
   const std::vector<double> p = momenta(segment, {0, -kSpeed});
   part.rows.push_back({"momenta, a = L = 1",
@@ -182,7 +178,7 @@ PaperPart paper_circle(PaperWork& work) {
   const Segment segment = paper_segment("vehicle", "midpoint");
   PaperPart part;
   part.title = "Section 5: V = 0, circle, midpoint rule";
-  add_momenta(segment, part);
+  add_circle_momenta(segment, part);
   add_turn(work, segment, part);
   add_departure(work, part);
   add_figure(work, segment, part);

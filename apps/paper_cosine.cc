@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "carnot/plots/series_plot.h"
 
@@ -17,7 +16,6 @@ using plots::SeriesPage;
 using plots::SeriesPanel;
 
 constexpr double kChordTime = 100;
-constexpr double kEps = std::numeric_limits<double>::epsilon();
 std::vector<double> end_point(PaperWork& work, const char* method, double time, double step) {
   const Segment segment = paper_segment(kCosineScene, method);
   std::vector<double> z = cosine_start(segment);

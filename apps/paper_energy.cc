@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "carnot/plots/series_plot.h"
 #include "paper_cosine.h"
@@ -14,8 +13,6 @@ namespace {
 using plots::Series;
 using plots::SeriesPage;
 using plots::SeriesPanel;
-
-constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 // The paper's method, another symplectic one and, for contrast, two that are not.
 const std::vector<std::string> kEnergyMethods{"midpoint", "gauss4", "radau5", "dop853"};

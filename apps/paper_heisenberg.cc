@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <memory>
 
 #include "carnot/plots/figure.h"
@@ -17,7 +16,6 @@
 namespace carnot::apps {
 namespace {
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
 const std::vector<double> kStart{0, 0, 0, 0.1, 0.3, 1};
 
 // (q, p) at T = 10 in 128 bits by two methods (tests/reference/initial_values.json).

@@ -20,8 +20,6 @@ using plots::Series;
 using plots::SeriesPage;
 using plots::SeriesPanel;
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
-constexpr double kPi = std::numbers::pi;
 constexpr double kTime = 150;
 
 // A return to a circular motion: where the distance from it is least.
@@ -79,7 +77,7 @@ std::vector<double> unstable_part(const Excursions& run) {
   return part;
 }
 
-void add_rates(const std::vector<Excursions>& runs, PaperPart& part) {
+void add_return_rates(const std::vector<Excursions>& runs, PaperPart& part) {
   constexpr double kLinear = 0.02;
   const double mu = CircleMotion{}.growth_rate();
   for (const Excursions& run : runs) {
@@ -274,7 +272,7 @@ PaperPart paper_returns(PaperWork& work) {
   }
   PaperPart part;
   part.title = "Section 5: V = 0, leaving the circle and returning, midpoint rule";
-  add_rates(runs, part);
+  add_return_rates(runs, part);
   add_passages(runs, part);
   add_returns(runs, part);
   add_next_circle(runs.back(), part);

@@ -1,6 +1,8 @@
 // Runs for `carnot paper`: a scene and a method by name, the flow recorded, lines fitted.
 #pragma once
 
+#include <limits>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -9,6 +11,9 @@
 #include "tangent_map.h"
 
 namespace carnot::apps {
+
+inline constexpr double kEps = std::numeric_limits<double>::epsilon();
+inline constexpr double kPi = std::numbers::pi;
 
 // The scene with its default parameters.
 Segment paper_segment(const std::string& scene, const std::string& method);

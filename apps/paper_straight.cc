@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "carnot/plots/series_plot.h"
@@ -28,7 +27,6 @@ using plots::SeriesPage;
 using plots::SeriesPanel;
 using Phase = std::array<double, 8>;  // x, y, theta, phi and their momenta
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr double kRate = std::numbers::phi;
 constexpr double kFineStep = 0.02;
 
@@ -55,7 +53,7 @@ std::vector<double> on_the_line(double angle) {
   return {0, 0, angle, angle, std::cos(angle), std::sin(angle), 0, 0};
 }
 
-void add_momenta(const Segment& segment, PaperPart& part) {
+void add_line_momenta(const Segment& segment, PaperPart& part) {
   const std::vector<double> q(4, 0.0);
   std::vector<double> velocity{1, 0, 0, 0};
   const std::vector<double> lambda{0, 0};
@@ -149,7 +147,7 @@ Departure departure(PaperWork& work, const Segment& segment, double perturbation
   return run;
 }
 
-void add_rates(const std::vector<Departure>& runs, PaperPart& part) {
+void add_line_rates(const std::vector<Departure>& runs, PaperPart& part) {
   constexpr double kAccepted = 0.01;
   constexpr double kLinear = 0.02;  // beyond, cubic terms change the rate by more than 1e-3
   const auto add = [&](const std::string& what, const LineFit& fit, const std::string& note) {
@@ -219,7 +217,7 @@ void add_growth(PaperWork& work, const Segment& segment, PaperPart& part) {
   for (const double perturbation : {1e-4, 1e-8, 1e-12}) {
     runs.push_back(departure(work, segment, perturbation));
   }
-  add_rates(runs, part);
+  add_line_rates(runs, part);
   const SeriesPage page = departure_page(runs);
   part.figures.push_back({"straight_line",
                           "growth of perturbations of phi on the straight line, and the paths",
@@ -232,7 +230,7 @@ PaperPart paper_straight(PaperWork& work) {
   const Segment segment = paper_segment("vehicle", "midpoint");
   PaperPart part;
   part.title = "Section 5: V = 0, straight line, midpoint rule";
-  add_momenta(segment, part);
+  add_line_momenta(segment, part);
   add_exactness(work, segment, part);
   add_wandering(work, segment, part);
   add_growth(work, segment, part);

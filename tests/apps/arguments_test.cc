@@ -7,7 +7,7 @@
 
 #include "nearest.h"
 
-namespace carnot::apps {
+namespace carnot::apps::arguments_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -64,4 +64,4 @@ TEST(Nearest, SuggestsOnlyWhatIsNear) {
 }
 
 }  // namespace
-}  // namespace carnot::apps
+}  // namespace carnot::apps::arguments_test

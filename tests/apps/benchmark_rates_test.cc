@@ -17,7 +17,7 @@
 #include "carnot/scenes/vehicle_cosine.h"
 #include "carnot/system_of.h"
 
-namespace carnot::apps {
+namespace carnot::apps::benchmark_rates_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -149,4 +149,4 @@ TEST(AdaptiveDop853, SaysWhenItCannot) {
 }
 
 }  // namespace
-}  // namespace carnot::apps
+}  // namespace carnot::apps::benchmark_rates_test

@@ -11,7 +11,7 @@
 #include "command.h"
 #include "testing/reference.h"
 
-namespace carnot::apps {
+namespace carnot::apps::benchmark_reference_test {
 namespace {
 
 BenchmarkTrajectory trajectory_of(const std::string& scene) {
@@ -91,4 +91,4 @@ TEST(BenchmarkReference, StopsWhenAsked) {
 }
 
 }  // namespace
-}  // namespace carnot::apps
+}  // namespace carnot::apps::benchmark_reference_test

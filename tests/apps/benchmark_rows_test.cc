@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace carnot::apps {
+namespace carnot::apps::benchmark_rows_test {
 namespace {
 
 BenchmarkRow row(const std::string& method, double error, double seconds) {
@@ -84,4 +84,4 @@ TEST(RunContest, StopsWhenAsked) {
 }
 
 }  // namespace
-}  // namespace carnot::apps
+}  // namespace carnot::apps::benchmark_rows_test

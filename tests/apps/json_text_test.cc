@@ -7,7 +7,7 @@
 
 #include "csv_text.h"
 
-namespace carnot::apps {
+namespace carnot::apps::json_text_test {
 namespace {
 
 TEST(JsonText, PrintsSeventeenDigits) {
@@ -69,4 +69,4 @@ TEST(CsvText, NumbersSeveralGeodesics) {
 }
 
 }  // namespace
-}  // namespace carnot::apps
+}  // namespace carnot::apps::json_text_test

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace carnot::apps {
+namespace carnot::apps::numbers_test {
 namespace {
 
 using std::numbers::pi;
@@ -137,4 +137,4 @@ TEST(Refuse, CutsVeryLongValues) {
 }
 
 }  // namespace
-}  // namespace carnot::apps
+}  // namespace carnot::apps::numbers_test

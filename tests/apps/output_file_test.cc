@@ -9,11 +9,10 @@
 #include "progress_bar.h"
 #include "text_table.h"
 
-namespace carnot::apps {
+namespace carnot::apps::output_file_test {
 namespace {
 
 using ::testing::ElementsAre;
-using ::testing::IsEmpty;
 
 TEST(WriteFile, ReplacesAndLeavesNothingElse) {
   const Sandbox sandbox;
@@ -62,4 +61,4 @@ TEST(TextTable, AlignsColumns) {
 }
 
 }  // namespace
-}  // namespace carnot::apps
+}  // namespace carnot::apps::output_file_test

@@ -14,7 +14,7 @@
 #include "scene_choice.h"
 #include "testing/reference.h"
 
-namespace carnot::apps {
+namespace carnot::apps::paper_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -272,4 +272,4 @@ TEST(PaperCircle, DistanceIsFromAnyCircle) {
 }
 
 }  // namespace
-}  // namespace carnot::apps
+}  // namespace carnot::apps::paper_test

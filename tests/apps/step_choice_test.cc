@@ -9,7 +9,7 @@
 #include "method_table.h"
 #include "scene_choice.h"
 
-namespace carnot::apps {
+namespace carnot::apps::step_choice_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -70,4 +70,4 @@ TEST(ChooseSteps, CanBeStopped) {
 }
 
 }  // namespace
-}  // namespace carnot::apps
+}  // namespace carnot::apps::step_choice_test
