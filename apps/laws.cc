@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <optional>
 
 #include "tangent_map.h"
@@ -111,16 +113,25 @@ LineFit fit_line(const std::vector<double>& x, const std::vector<double>& y) {
   LineFit fit;
   fit.points = static_cast<int>(x.size());
   if (fit.points < 2) return fit;
-  const auto as_column = [](const std::vector<double>& values) {
-    return Eigen::Map<const Column>(values.data(), static_cast<Eigen::Index>(values.size()));
-  };
-  const Column dx = as_column(x).array() - as_column(x).mean();
-  const Column dy = as_column(y).array() - as_column(y).mean();
-  const double xx = dx.squaredNorm();
-  fit.slope = dx.dot(dy) / xx;
-  fit.correlation = dx.dot(dy) / std::sqrt(xx * dy.squaredNorm());
+  // Sums in order: Eigen's depend on where the values lie in memory, and so on the thread.
+  const double mean_x = std::accumulate(x.begin(), x.end(), 0.0) / fit.points;
+  const double mean_y = std::accumulate(y.begin(), y.end(), 0.0) / fit.points;
+  double xx = 0;
+  double xy = 0;
+  double yy = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    xx += (x[i] - mean_x) * (x[i] - mean_x);
+    xy += (x[i] - mean_x) * (y[i] - mean_y);
+    yy += (y[i] - mean_y) * (y[i] - mean_y);
+  }
+  fit.slope = xy / xx;
+  fit.correlation = xy / std::sqrt(xx * yy);
   if (fit.points > 2) {
-    fit.standard_error = (dy - fit.slope * dx).norm() / std::sqrt(xx * (fit.points - 2));
+    double rest = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      rest += std::pow(y[i] - mean_y - fit.slope * (x[i] - mean_x), 2);
+    }
+    fit.standard_error = std::sqrt(rest / (xx * (fit.points - 2)));
   }
   return fit;
 }
