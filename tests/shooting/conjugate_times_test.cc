@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "shooting/problems.h"
+#include "testing/reference.h"
 
 namespace carnot {
 namespace {
@@ -39,6 +40,25 @@ TEST(ConjugateTimes, NoneOnAShortArc) {
   const ConjugateTimes result = times_of(test::heisenberg_group({1, 0, 1}), {1, 0.5, 5}, 1);
   EXPECT_TRUE(result.known);
   EXPECT_TRUE(result.times.empty());
+}
+
+// From y = 0 with speed 1, p_x = 1 - 2 k^2 and p_z = lambda, the first one at sqrt(lambda) t of the
+// reference, which has 20 digits.
+TEST(ConjugateTimes, MartinetOfTheReference) {
+  constexpr double kBeyond = 1.2;  // the end is that much later
+  const test::Json data = test::own_reference("martinet.json");
+  ASSERT_FALSE(data.is_null());
+  for (const auto& row : data["conjugate"]) {
+    const double k = std::stod(row["k"].get<std::string>());
+    const double scaled = std::stod(row["conj_sqrt_lambda_t"].get<std::string>());
+    const double root = kBeyond * scaled;
+    const double p_x = 1 - 2 * k * k;
+    const ConjugateTimes result =
+        times_of(test::martinet({0, 0, 1}), {p_x, std::sqrt(1 - p_x * p_x), root * root}, 1);
+    ASSERT_TRUE(result.known) << k;
+    ASSERT_GE(result.times.size(), 1U) << k;
+    EXPECT_NEAR(result.times[0], scaled / root, kTolerance) << k;
+  }
 }
 
 // Even multiplicity, which the sign of det dq/dp0 does not see.

@@ -83,6 +83,10 @@ BoundaryValueProblem heisenberg_group(std::vector<double> to, double time) {
   return {segment("heisenberg-group"), {0, 0, 0}, std::move(to), time};
 }
 
+BoundaryValueProblem martinet(std::vector<double> to) {
+  return {segment("martinet"), {0, 0, 0}, std::move(to)};
+}
+
 BoundaryValueProblem unicycle(std::vector<double> from, std::vector<double> to) {
   return {segment("unicycle"), std::move(from), std::move(to)};
 }

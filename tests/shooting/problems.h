@@ -18,6 +18,7 @@ BoundaryValueProblem stiff_vehicle(std::vector<double> to);
 
 BoundaryValueProblem vehicle_cosine(std::vector<double> from, std::vector<double> to, double time);
 BoundaryValueProblem heisenberg_group(std::vector<double> to, double time = 1);  // from the origin
+BoundaryValueProblem martinet(std::vector<double> to);                           // the same
 BoundaryValueProblem unicycle(std::vector<double> from, std::vector<double> to);
 
 // Two equal springs, no constraint: q'' = -q. Every extremal is conjugate, doubly, at t = pi.

@@ -12,7 +12,7 @@
 #include "testing/order.h"
 #include "testing/runs.h"
 
-namespace carnot {
+namespace carnot::invariants_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -146,4 +146,4 @@ TEST(EnergyTest, VehicleDoesNotDrift) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::invariants_test

@@ -10,7 +10,7 @@
 #include "carnot/gauss.h"
 #include "testing/runs.h"
 
-namespace carnot {
+namespace carnot::paper_motions_test {
 namespace {
 
 using System = VelocityConstraints<scenes::Vehicle>;
@@ -112,4 +112,4 @@ TEST(CircularMotionTest, StaysOnTheCircleBefore) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::paper_motions_test

@@ -7,7 +7,7 @@
 #include "carnot/gauss.h"
 #include "testing/runs.h"
 
-namespace carnot {
+namespace carnot::reference_test {
 namespace {
 
 using test::Json;
@@ -107,4 +107,4 @@ TEST(OwnReferenceTest, IsThere) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::reference_test

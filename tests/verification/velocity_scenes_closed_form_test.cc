@@ -15,7 +15,7 @@
 #include "testing/more_scene_runs.h"
 #include "testing/reference.h"
 
-namespace carnot {
+namespace carnot::velocity_scenes_closed_form_test {
 namespace {
 
 using test::Json;
@@ -252,4 +252,4 @@ TEST(ElasticaTest, PlaneCurvesTurnAsTheirHeadersSay) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::velocity_scenes_closed_form_test

@@ -8,7 +8,7 @@
 #include "testing/attitude.h"
 #include "testing/more_scene_runs.h"
 
-namespace carnot {
+namespace carnot::velocity_scenes_flow_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -140,4 +140,4 @@ TYPED_TEST(VelocityScenesFlowTest, IsReversible) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::velocity_scenes_flow_test

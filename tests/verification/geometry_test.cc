@@ -1,0 +1,40 @@
+// Symplecticity, tangent and reversibility of every method that claims them, on several scenes.
+#include <string>
+#include <tuple>
+
+#include "testing/geometry_laws.h"
+
+namespace carnot {
+namespace {
+
+template <class Scene>
+void expect_laws(const Tableau<double>& tableau) {
+  test::expect_geometry_laws<Scene::kDof>(test::method_run<Scene>(tableau));
+}
+
+struct SceneLaws {
+  const char* name;
+  void (*expect)(const Tableau<double>&);
+};
+
+class Geometry : public ::testing::TestWithParam<std::tuple<SceneLaws, std::string>> {};
+
+TEST_P(Geometry, Holds) {
+  const auto& [scene, method] = GetParam();
+  scene.expect(make_tableau(*find_method(method)));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Scenes,
+    Geometry,
+    ::testing::Combine(
+        ::testing::Values(SceneLaws{"vehicle", expect_laws<scenes::Vehicle>},
+                          SceneLaws{"vehicle_cosine", expect_laws<scenes::VehicleCosine>},
+                          SceneLaws{"heisenberg", expect_laws<scenes::Heisenberg>},
+                          SceneLaws{"heisenberg_group", expect_laws<scenes::HeisenbergGroup>},
+                          SceneLaws{"unicycle", expect_laws<scenes::Unicycle>}),
+        ::testing::ValuesIn(test::geometric_methods())),
+    [](const auto& of) { return std::get<0>(of.param).name + ("_" + std::get<1>(of.param)); });
+
+}  // namespace
+}  // namespace carnot
