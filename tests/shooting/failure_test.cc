@@ -85,7 +85,8 @@ TEST(Failure, NotRefined) {
 
 // The straight line is a discrete extremal, but leads where the mass is negative.
 TEST(Failure, FlowFailed) {
-  const BoundaryValueProblem problem(make_segment(test::FadingMass{}), {1, 0, 0}, {-1, 0, 0});
+  const BoundaryValueProblem problem(
+      make_segment(test::OneByOne<test::FadingMass>{}), {1, 0, 0}, {-1, 0, 0});
   Reason reason = Reason::kNone;
   EXPECT_FALSE(polish(problem, {}, straight_path(problem, 32), &reason));
   EXPECT_EQ(reason, Reason::kFlowFailed);

@@ -11,9 +11,11 @@
 namespace carnot::test {
 namespace {
 
+// Number by number: the way of scenes that do not run on packs, and quick to compile.
 struct Oscillator {
   static constexpr int kDof = 2;
   static constexpr int kMultipliers = 0;
+  static constexpr bool kScalarOnly = true;
 
   template <class T>
   [[nodiscard]] Matrix<T, 2, 2> mass(const Vector<T, 2>& /*q*/) const {
@@ -34,6 +36,7 @@ struct Oscillator {
 struct Pendulum {
   static constexpr int kDof = 1;
   static constexpr int kMultipliers = 0;
+  static constexpr bool kScalarOnly = true;
 
   template <class T>
   [[nodiscard]] Matrix<T, 1, 1> mass(const Vector<T, 1>& /*q*/) const {

@@ -263,7 +263,9 @@ TEST(SteeringFunctionTest, FailuresHaveAReason) {
   fails(unicycle(), {0, 0}, "2 components, the scene has 3");
   fails(unicycle(), {0, NAN, 0}, "not a finite number");
   fails(unicycle(), {0, INFINITY, 0}, "not a finite number");
-  fails(SteeringFunction(make_segment(test::DependentRows{})), {0, 0, 1}, "linearly dependent");
+  fails(SteeringFunction(make_segment(test::OneByOne<test::DependentRows>{})),
+        {0, 0, 1},
+        "linearly dependent");
   const Pose b{1, 0, 0};
   EXPECT_FALSE(unicycle().interpolate(a, b, 1.5, q));
   EXPECT_FALSE(unicycle().interpolate(a, b, NAN, q));

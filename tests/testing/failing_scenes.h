@@ -6,6 +6,12 @@
 
 namespace carnot::test {
 
+// Number by number: the way of scenes that do not run on packs, and quick to compile.
+template <class Scene>
+struct OneByOne : Scene {
+  static constexpr bool kScalarOnly = true;
+};
+
 // Rows (1, 0, 0) and (1, q2, 0): dependent where q2 = 0.
 struct DependentRows {
   static constexpr int kDof = 3;
