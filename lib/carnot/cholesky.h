@@ -8,6 +8,7 @@
 // whose value is zero and with them the derivatives.)
 #pragma once
 
+#include "carnot/gradient.h"
 #include "carnot/linear_algebra.h"
 #include "carnot/scalar.h"
 
@@ -84,7 +85,7 @@ class Cholesky {
 template <class T, int N, int n>
 class Cholesky<Jet<T, N>, n> {
  public:
-  explicit Cholesky(const Matrix<Jet<T, N>, n, n>& a) : a_(a), values_(values_of(a)) {}
+  explicit Cholesky(const Matrix<Jet<T, N>, n, n>& a) : a_(a), values_(primal(a)) {}
 
   [[nodiscard]] bool positive() const { return values_.positive(); }
 
@@ -107,14 +108,6 @@ class Cholesky<Jet<T, N>, n> {
   }
 
  private:
-  static Matrix<T, n, n> values_of(const Matrix<Jet<T, N>, n, n>& a) {
-    Matrix<T, n, n> values;
-    for (int i = 0; i < n; ++i) {
-      for (int j = 0; j < n; ++j) values(i, j) = a(i, j).a;
-    }
-    return values;
-  }
-
   Matrix<Jet<T, N>, n, n> a_;
   Cholesky<T, n> values_;
 };

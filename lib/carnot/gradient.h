@@ -28,6 +28,24 @@ Vector<J, n> unseeded(const Vector<T, n>& v) {
   return x;
 }
 
+// The values of Jets, and the derivatives of a vector of them, one row for each.
+template <class T, int N, int rows, int cols>
+Matrix<T, rows, cols> primal(const Matrix<Jet<T, N>, rows, cols>& x) {
+  Matrix<T, rows, cols> values;
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < cols; ++j) values(i, j) = x(i, j).a;
+  }
+  return values;
+}
+template <class T, int N, int n>
+Matrix<T, n, N> tangents(const Vector<Jet<T, N>, n>& x) {
+  Matrix<T, n, N> slopes;
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < N; ++j) slopes(i, j) = x[i].v[j];
+  }
+  return slopes;
+}
+
 // f: Vector<U, n> -> U for U = Jet<T, n>. Returns the n partial derivatives at q.
 template <class F, class T, int n>
 Vector<T, n> gradient(const F& f, const Vector<T, n>& q) {

@@ -21,118 +21,87 @@
 
 namespace carnot {
 
-// Least-squares form of one interval at (qm, v): |r|^2/2 = v'M v/2 + gamma |G v|^2/2 with gamma as
-// in the multiplier route (so that singular M is allowed too), c = G v, and V.
+// What the least-squares form of one interval needs at qm: U with v'U'U v = v'M v + gamma |G v|^2,
+// gamma as in the multiplier route (so that singular M is allowed too), G, and V. The interval has
+// r = U v, c = G v.
 template <class T, int n, int k>
-struct MidpointTerms {
-  Vector<T, n> r;
-  Vector<T, k> c;
+struct MidpointFactors {
+  Matrix<T, n, n> root;  // upper triangular; nothing is said below the diagonal
+  Matrix<T, k, n> constraints;
   T potential;
 };
 
 template <class Scene, class T>
-[[nodiscard]] bool midpoint_terms(const VelocityConstraints<Scene>& system,
-                                  const Vector<T, Scene::kDof>& qm,
-                                  const Vector<T, Scene::kDof>& v,
-                                  MidpointTerms<T, Scene::kDof, Scene::kMultipliers>& out) {
+[[nodiscard]] bool midpoint_factors(const VelocityConstraints<Scene>& system,
+                                    const Vector<T, Scene::kDof>& qm,
+                                    MidpointFactors<T, Scene::kDof, Scene::kMultipliers>& out) {
   using std::sqrt;
   constexpr int n = Scene::kDof;
-  const Matrix<T, n, n> mass = system.regular_mass(qm);
+  if constexpr (Scene::kMultipliers > 0) out.constraints = system.scene().constraints(qm);
+  const Matrix<T, n, n> mass = system.regular_mass(qm, out.constraints);
   Matrix<T, n, n> lower;
   Vector<T, n> pivots;
   if (!cholesky_factor(mass, lower, pivots)) return false;
-  for (int i = 0; i < n; ++i) {  // r = D^(1/2) L' v
-    T sum = v[i];
-    for (int j = i + 1; j < n; ++j) sum += lower(j, i) * v[j];
-    out.r[i] = sqrt(pivots[i]) * sum;
+  for (int i = 0; i < n; ++i) {  // U = D^(1/2) L'
+    out.root(i, i) = sqrt(pivots[i]);
+    for (int j = i + 1; j < n; ++j) out.root(i, j) = out.root(i, i) * lower(j, i);
   }
-  out.c = system.constraint(qm, v);
   out.potential = system.potential(qm);
   return true;
 }
 
+// First derivatives of l(q, v) = L - lambda.G v - lambda'P lambda/2 at fixed lambda.
+template <class T, int n, int k>
+struct LagrangianSlopes {
+  Vector<T, n> l_q;
+  Vector<T, n> l_v;  // M v - G' lambda, the momentum
+  Vector<T, k> g;    // G v + P lambda
+};
+
+// A scene with dependent rows writes both itself: gauge(q) -> P, and its slopes(q, v, lambda).
 template <class S>
 concept HasGauge = requires(const S& scene, const Vector<double, S::kDof>& q) {
   { scene.gauge(q) } -> std::convertible_to<Matrix<double, S::kMultipliers, S::kMultipliers>>;
 };
 
-// P(q) lambda.
-template <HasGauge Scene, class T>
-Vector<T, Scene::kMultipliers> gauge_part(const Scene& scene,
-                                          const Vector<T, Scene::kDof>& q,
-                                          const Vector<double, Scene::kMultipliers>& lambda) {
-  Vector<T, Scene::kMultipliers> l;
-  for (int i = 0; i < Scene::kMultipliers; ++i) l[i] = constant<T>(lambda[i]);
-  return product(scene.gauge(q), l);
-}
-
-// First and, where asked for, second derivatives of l(q, v) = L - lambda.G v - lambda'P lambda/2 at
-// fixed lambda.
-template <int n, int k>
-struct AugmentedLagrangian {
-  Vector<double, n> l_q;
-  Vector<double, n> l_v;  // M v - G' lambda, the momentum
-  Vector<double, k> g;    // G v + P lambda
-  Matrix<double, n, n> l_qq;
-  Matrix<double, n, n> l_vq;  // row: v, column: q
-  Matrix<double, n, n> l_vv;  // M
-  Matrix<double, k, n> g_q;
-  Matrix<double, k, n> g_v;  // G
-};
-
-// l is quadratic in v, so Jets are needed in the n directions of q only, nested for l_qq alone.
-template <class Scene>
-void augmented_lagrangian(const VelocityConstraints<Scene>& system,
-                          const Vector<double, Scene::kDof>& q,
-                          const Vector<double, Scene::kDof>& v,
-                          const Vector<double, Scene::kMultipliers>& lambda,
-                          bool second,
-                          AugmentedLagrangian<Scene::kDof, Scene::kMultipliers>& out) {
+// T is double, or a Jet for second derivatives. l is quadratic in v, so that Jets are needed in the
+// n directions of q only, and linear in M, G and V, so that no product of Jets is formed.
+template <class Scene, class T>
+LagrangianSlopes<T, Scene::kDof, Scene::kMultipliers> lagrangian_slopes(
+    const VelocityConstraints<Scene>& system,
+    const Vector<T, Scene::kDof>& q,
+    const Vector<double, Scene::kDof>& v,
+    const Vector<double, Scene::kMultipliers>& lambda) {
   constexpr int n = Scene::kDof;
   constexpr int k = Scene::kMultipliers;
-  const auto value = [&](const auto& x) {
-    using T = typename std::decay_t<decltype(x)>::Scalar;
-    Vector<T, n> velocity;
-    for (int i = 0; i < n; ++i) velocity[i] = constant<T>(v[i]);
-    T sum = system.lagrangian(x, velocity);
-    const Vector<T, k> g = system.constraint(x, velocity);
-    for (int i = 0; i < k; ++i) sum -= constant<T>(lambda[i]) * g[i];
-    if constexpr (HasGauge<Scene>) {
-      const Vector<T, k> kept = gauge_part(system.scene(), x, lambda);
-      for (int i = 0; i < k; ++i) sum -= constant<T>(0.5 * lambda[i]) * kept[i];
-    }
-    return sum;
+  if constexpr (HasGauge<Scene>) return system.scene().slopes(q, v, lambda);
+  LagrangianSlopes<T, n, k> out;
+  out.l_q.setConstant(constant<T>(0));
+  out.l_v.setConstant(constant<T>(0));
+  out.g.setConstant(constant<T>(0));
+  const auto x = seeded(q);
+  const auto add = [&](const Jet<T, n>& entry, double weight) {
+    for (int d = 0; d < n; ++d) out.l_q[d] += entry.v[d] * weight;
   };
-  const auto rows = [&](const auto& x, const auto& velocity) {
-    using T = typename std::decay_t<decltype(x)>::Scalar;
-    Vector<T, k> g = system.constraint(x, velocity);
-    if constexpr (HasGauge<Scene>) g += gauge_part(system.scene(), x, lambda);
-    return g;
-  };
-  if (!second) {
-    out.l_q = gradient(value, q);
-    out.l_v = system.momentum(q, v, lambda);
-    out.g = rows(q, v);
-    return;
-  }
-  using J = Jet<double, n>;
-  const Vector<J, n> x = seeded(q);
-  const Vector<J, n> vj = unseeded<J>(v);
-  const Vector<J, n> l_q = gradient(value, x);
-  const Vector<J, n> l_v = system.momentum(x, vj, Vector<J, k>(unseeded<J>(lambda)));
-  const Vector<J, k> g = rows(x, vj);
+  if constexpr (HasPotential<Scene>) add(system.potential(x), -1);
+  const Matrix<Jet<T, n>, n, n> mass = system.scene().mass(x);
   for (int i = 0; i < n; ++i) {
-    out.l_q[i] = l_q[i].a;
-    out.l_v[i] = l_v[i].a;
-    out.l_qq.row(i) = l_q[i].v.transpose();
-    out.l_vq.row(i) = l_v[i].v.transpose();
+    for (int j = 0; j < n; ++j) {
+      out.l_v[i] += mass(i, j).a * v[j];
+      if (j <= i) add(mass(i, j), (j < i ? 1 : 0.5) * v[i] * v[j]);
+    }
   }
-  for (int i = 0; i < k; ++i) {
-    out.g[i] = g[i].a;
-    for (int j = 0; j < n; ++j) out.g_q(i, j) = g[i].v[j];
+  if constexpr (k > 0) {
+    const Matrix<Jet<T, n>, k, n> rows = system.scene().constraints(x);
+    for (int i = 0; i < k; ++i) {
+      for (int j = 0; j < n; ++j) {
+        out.g[i] += rows(i, j).a * v[j];
+        out.l_v[j] += rows(i, j).a * -lambda[i];
+        add(rows(i, j), -lambda[i] * v[j]);
+      }
+    }
   }
-  out.l_vv = system.scene().mass(q);
-  out.g_v = system.scene().constraints(q);
+  return out;
 }
 
 // Gradient and, unless null, Hessian of the discrete Lagrangian F_d(q0, q1, lambda) = h l(qm, v)
@@ -150,29 +119,35 @@ void discrete_lagrangian(
   constexpr int k = Scene::kMultipliers;
   const Vector<double, n> q0 = x.template head<n>();
   const Vector<double, n> q1 = x.template segment<n>(n);
-  AugmentedLagrangian<n, k> l;
-  augmented_lagrangian(system,
-                       Vector<double, n>(0.5 * (q0 + q1)),
-                       Vector<double, n>((q1 - q0) / h),
-                       Vector<double, k>(x.template tail<k>()),
-                       hessian != nullptr,
-                       l);
-  gradient_out << 0.5 * h * l.l_q - l.l_v, 0.5 * h * l.l_q + l.l_v, -h * l.g;
-  if (hessian == nullptr) return;
-  const Matrix<double, n, n> symmetric = 0.5 * (l.l_vq + l.l_vq.transpose());
-  const Matrix<double, n, n> skew = 0.5 * (l.l_vq.transpose() - l.l_vq);
-  const Matrix<double, n, n> position = 0.25 * h * l.l_qq;
-  const Matrix<double, n, n> velocity = l.l_vv / h;
+  const Vector<double, n> qm = 0.5 * (q0 + q1);
+  const Vector<double, n> v = (q1 - q0) / h;
+  const Vector<double, k> lambda = x.template tail<k>();
+  const auto write_gradient = [&](const auto& l_q, const auto& l_v, const auto& g) {
+    gradient_out << 0.5 * h * l_q - l_v, 0.5 * h * l_q + l_v, -h * g;
+  };
+  if (hessian == nullptr) {
+    const auto l = lagrangian_slopes(system, qm, v, lambda);
+    write_gradient(l.l_q, l.l_v, l.g);
+    return;
+  }
+  const auto l = lagrangian_slopes(system, seeded(qm), v, lambda);
+  write_gradient(primal(l.l_q), primal(l.l_v), primal(l.g));
+  const Matrix<double, n, n> l_vq = tangents(l.l_v);
+  const Matrix<double, k, n> g_q = tangents(l.g);
+  const Matrix<double, k, n> g_v = system.scene().constraints(qm);  // G
+  const Matrix<double, n, n> symmetric = 0.5 * (l_vq + l_vq.transpose());
+  const Matrix<double, n, n> skew = 0.5 * (l_vq.transpose() - l_vq);
+  const Matrix<double, n, n> position = 0.25 * h * tangents(l.l_q);
+  const Matrix<double, n, n> velocity = system.scene().mass(qm) / h;
   hessian->setZero();
   hessian->template block<n, n>(0, 0) = position - symmetric + velocity;
   hessian->template block<n, n>(n, n) = position + symmetric + velocity;
   hessian->template block<n, n>(0, n) = position + skew - velocity;
   hessian->template block<n, n>(n, 0) = hessian->template block<n, n>(0, n).transpose();
-  hessian->template block<k, n>(2 * n, 0) = l.g_v - 0.5 * h * l.g_q;
-  hessian->template block<k, n>(2 * n, n) = -l.g_v - 0.5 * h * l.g_q;
+  hessian->template block<k, n>(2 * n, 0) = g_v - 0.5 * h * g_q;
+  hessian->template block<k, n>(2 * n, n) = -g_v - 0.5 * h * g_q;
   if constexpr (HasGauge<Scene>) {
-    hessian->template bottomRightCorner<k, k>() =
-        -h * system.scene().gauge(Vector<double, n>(0.5 * (q0 + q1)));
+    hessian->template bottomRightCorner<k, k>() = -h * system.scene().gauge(qm);
   }
   hessian->template topRightCorner<2 * n, k>() =
       hessian->template bottomLeftCorner<k, 2 * n>().transpose();

@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "carnot/admissible_velocities.h"
+#include "carnot/gradient.h"
 #include "carnot/index_one_system.h"
 #include "carnot/midpoint_transcription.h"
 #include "carnot/optimal_control.h"
@@ -42,30 +43,38 @@ bool midpoint(
   constexpr int k = kTranscribed<B>;
   const Vector<double, n> qm = view<n>(qm_in);
   const Vector<double, n> v = view<n>(v_in);
+  // Terms sum_j a_j v_j; a row of the jacobian is a_q v, then a.
+  const auto row_of = [&](const auto& matrix, int row, int first, int to) {
+    double sum = 0;
+    for (int j = first; j < n; ++j) sum += value_of(matrix(row, j)) * v[j];
+    terms[to] = sum;
+    if constexpr (kIsJet<typename std::decay_t<decltype(matrix)>::Scalar>) {
+      auto by_q = view<n>(jacobian + to * 2 * n);
+      auto by_v = view<n>(jacobian + to * 2 * n + n);
+      by_q.setZero();
+      by_v.setZero();
+      for (int j = first; j < n; ++j) {
+        by_q += v[j] * matrix(row, j).v;
+        by_v[j] = matrix(row, j).a;
+      }
+    }
+  };
+  const auto write = [&](const auto& factors) {
+    for (int i = 0; i < n; ++i) row_of(factors.root, i, i, i);
+    for (int i = 0; i < k; ++i) row_of(factors.constraints, i, 0, n + i);
+    terms[n + k] = value_of(factors.potential);
+  };
   if (jacobian == nullptr) {
-    MidpointTerms<double, n, k> out;
-    if (!midpoint_terms(system, qm, v, out)) return false;
-    for (int i = 0; i < n; ++i) terms[i] = out.r[i];
-    for (int i = 0; i < k; ++i) terms[n + i] = out.c[i];
-    terms[n + k] = out.potential;
+    MidpointFactors<double, n, k> factors;
+    if (!midpoint_factors(system, qm, factors)) return false;
+    write(factors);
     return true;
   }
-  using J = Jet<double, 2 * n>;
-  Vector<J, n> qj;
-  Vector<J, n> vj;
-  for (int i = 0; i < n; ++i) {
-    qj[i] = J(qm[i], i);
-    vj[i] = J(v[i], n + i);
-  }
-  MidpointTerms<J, n, k> out;
-  if (!midpoint_terms(system, qj, vj, out)) return false;
-  const auto store = [&](int row, const J& x) {
-    terms[row] = x.a;
-    view<2 * n>(jacobian + row * 2 * n) = x.v;
-  };
-  for (int i = 0; i < n; ++i) store(i, out.r[i]);
-  for (int i = 0; i < k; ++i) store(n + i, out.c[i]);
-  store(n + k, out.potential);
+  MidpointFactors<Jet<double, n>, n, k> factors;
+  if (!midpoint_factors(system, seeded(qm), factors)) return false;
+  write(factors);
+  view<n>(jacobian + (n + k) * 2 * n) = factors.potential.v;
+  view<n>(jacobian + (n + k) * 2 * n + n).setZero();
   return true;
 }
 

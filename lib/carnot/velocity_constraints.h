@@ -112,10 +112,22 @@ class VelocityConstraints {
   }
 
   // M + gamma G'G: the same velocities and multipliers, positive definite where M >= 0 is not.
-  // Any gamma > 0 will do; this one makes both terms of equal size.
+  // Any gamma > 0 will do; this one makes both terms of equal size. `g` is G.
   template <class T>
-  [[nodiscard]] Matrix<T, kDof, kDof> regular_mass(const Vector<T, kDof>& q) const {
-    return regular_mass(q, Matrix<T, kMultipliers, kDof>(scene_.constraints(q)));
+  [[nodiscard]] Matrix<T, kDof, kDof> regular_mass(const Vector<T, kDof>& q,
+                                                   const Matrix<T, kMultipliers, kDof>& g) const {
+    Matrix<T, kDof, kDof> a = scene_.mass(q);
+    if constexpr (kMultipliers > 0) {
+      const Matrix<T, kDof, kDof> square = product(g.transpose(), g);
+      T mass_trace = a(0, 0);
+      T square_trace = square(0, 0);
+      for (int i = 1; i < kDof; ++i) {
+        mass_trace += a(i, i);
+        square_trace += square(i, i);
+      }
+      a += (mass_trace / square_trace) * square;
+    }
+    return a;
   }
 
   // lambda from p = M v - G' lambda, by G G' lambda = G (M v - p).
@@ -195,23 +207,6 @@ class VelocityConstraints {
   [[nodiscard]] T kinetic(const Vector<T, kDof>& q, const Vector<T, kDof>& v) const {
     const Vector<T, kDof> mv = product(scene_.mass(q), v);
     return constant<T>(0.5) * dot(v, mv);
-  }
-
-  template <class T>
-  [[nodiscard]] Matrix<T, kDof, kDof> regular_mass(const Vector<T, kDof>& q,
-                                                   const Matrix<T, kMultipliers, kDof>& g) const {
-    Matrix<T, kDof, kDof> a = scene_.mass(q);
-    if constexpr (kMultipliers > 0) {
-      const Matrix<T, kDof, kDof> square = product(g.transpose(), g);
-      T mass_trace = a(0, 0);
-      T square_trace = square(0, 0);
-      for (int i = 1; i < kDof; ++i) {
-        mass_trace += a(i, i);
-        square_trace += square(i, i);
-      }
-      a += (mass_trace / square_trace) * square;
-    }
-    return a;
   }
 
   template <class T>

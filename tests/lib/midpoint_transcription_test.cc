@@ -9,6 +9,8 @@
 
 #include "carnot/gauss.h"
 #include "carnot/make_segment.h"
+#include "carnot/system_of.h"
+#include "testing/control_scene_list.h"
 #include "testing/runs.h"
 
 namespace carnot::midpoint_transcription_test {
@@ -20,16 +22,41 @@ constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr double kStep = 1e-3;
 constexpr double kDifferences = 1e-9;
 
+// Controls with a weight that depends on the place.
+struct WeightedBrockett {
+  static constexpr int kDof = 3;
+  static constexpr int kControls = 2;
+
+  template <class T>
+  [[nodiscard]] Matrix<T, 3, 2> frame(const Vector<T, 3>& q) const {
+    return scenes::Brockett{}.frame(q);
+  }
+  template <class T>
+  [[nodiscard]] Matrix<T, 2, 2> control_weight(const Vector<T, 3>& q) const {
+    Matrix<T, 2, 2> weight;
+    weight << q[2] * q[2] + constant<T>(1), constant<T>(0.3), constant<T>(0.3),
+        q[0] * q[0] + constant<T>(2);
+    return weight;
+  }
+  [[nodiscard]] SceneInfo info() const {
+    SceneInfo info = scenes::Brockett{}.info();
+    info.name = "weighted-brockett";
+    return info;
+  }
+};
+
 template <class Scene>
 class MidpointTest : public ::testing::Test {
  protected:
+  // What is transcribed: the system itself, or a control problem without its controls.
+  using System = std::decay_t<decltype(segment_calls::transcription(make_system(Scene{})))>;
   static constexpr int kDof = Scene::kDof;
-  static constexpr int kMultipliers = Scene::kMultipliers;
+  static constexpr int kMultipliers = System::kMultipliers;
   static constexpr int kTerms = kDof + kMultipliers + 1;
   static constexpr int kUnknowns = 2 * kDof + kMultipliers;
   using Unknowns = Vector<double, kUnknowns>;
 
-  const VelocityConstraints<Scene> system_{test::uneven<Scene>()};
+  const System system_ = segment_calls::transcription(make_system(test::uneven<Scene>()));
   const Segment segment_ = make_segment(test::uneven<Scene>(), "midpoint");
   test::Generator generator_{1};
 
@@ -48,6 +75,15 @@ using MidpointScenes =
     ::testing::Types<scenes::VehicleCosine, scenes::HeisenbergGroup, scenes::Unicycle>;
 TYPED_TEST_SUITE(MidpointTest, MidpointScenes, test::SceneNames);
 
+template <class Scene>
+class MidpointDerivativesTest : public MidpointTest<Scene> {};
+using DerivativeScenes = ::testing::Types<scenes::VehicleCosine,
+                                          scenes::HeisenbergGroup,
+                                          scenes::Unicycle,
+                                          scenes::Bicycle,
+                                          WeightedBrockett>;
+TYPED_TEST_SUITE(MidpointDerivativesTest, DerivativeScenes, test::SceneNames);
+
 // Derivative of a vector function along unit vector i.
 template <class F, class X>
 auto difference(const F& f, const X& x, int i) {
@@ -59,12 +95,12 @@ auto difference(const F& f, const X& x, int i) {
   return ((8 * (at(kStep) - at(-kStep)) - (at(2 * kStep) - at(-2 * kStep))) / (12 * kStep)).eval();
 }
 
-TYPED_TEST(MidpointTest, JacobianAgreesWithDifferences) {
+TYPED_TEST(MidpointDerivativesTest, JacobianAgreesWithDifferences) {
   constexpr int columns = 2 * TypeParam::kDof;
   constexpr int rows = TestFixture::kTerms;
   using RowMajor = Eigen::Matrix<double, rows, columns, Eigen::RowMajor>;
   for (int sample = 0; sample < 20; ++sample) {
-    const auto x = test::random_vector<columns>(this->generator_, 2);
+    const auto x = test::random_vector<columns>(this->generator_);
     Vector<double, rows> values;
     RowMajor jacobian;
     ASSERT_TRUE(this->segment_.midpoint(
@@ -80,7 +116,7 @@ TYPED_TEST(MidpointTest, JacobianAgreesWithDifferences) {
 // |r|^2 = v'M v where G v = 0; c = G v; the last term is V.
 TYPED_TEST(MidpointTest, TermsMakeTheLagrangian) {
   constexpr int n = TypeParam::kDof;
-  constexpr int k = TypeParam::kMultipliers;
+  constexpr int k = TestFixture::kMultipliers;
   for (int sample = 0; sample < 20; ++sample) {
     auto x = test::random_vector<2 * n>(this->generator_, 2);
     const Vector<double, n> q = x.template head<n>();
@@ -97,18 +133,20 @@ TYPED_TEST(MidpointTest, TermsMakeTheLagrangian) {
 }
 
 // The gradient against F_d itself.
-TYPED_TEST(MidpointTest, GradientAgreesWithDifferences) {
+TYPED_TEST(MidpointDerivativesTest, GradientAgreesWithDifferences) {
   constexpr int size = TestFixture::kUnknowns;
   constexpr int n = TypeParam::kDof;
-  constexpr int k = TypeParam::kMultipliers;
+  constexpr int k = TestFixture::kMultipliers;
   constexpr double h = 0.5;
   const auto discrete = [&](const auto& x) {
     const Vector<double, n> q = 0.5 * (x.template head<n>() + x.template segment<n>(n));
     const Vector<double, n> v = (x.template segment<n>(n) - x.template head<n>()) / h;
     const Vector<double, k> lambda = x.template tail<k>();
-    const double value =
-        h * (this->system_.lagrangian(q, v) - lambda.dot(this->system_.constraint(q, v)));
-    return Vector<double, 1>(Vector<double, 1>::Constant(value));
+    double value = this->system_.lagrangian(q, v) - lambda.dot(this->system_.constraint(q, v));
+    if constexpr (HasGauge<std::decay_t<decltype(this->system_.scene())>>) {
+      value -= 0.5 * lambda.dot(this->system_.scene().gauge(q) * lambda);
+    }
+    return Vector<double, 1>(Vector<double, 1>::Constant(h * value));
   };
   for (int sample = 0; sample < 10; ++sample) {
     const auto x = test::random_vector<size>(this->generator_);
@@ -120,7 +158,7 @@ TYPED_TEST(MidpointTest, GradientAgreesWithDifferences) {
 }
 
 // The Hessian against the gradient.
-TYPED_TEST(MidpointTest, HessianAgreesWithDifferencesAndIsSymmetric) {
+TYPED_TEST(MidpointDerivativesTest, HessianAgreesWithDifferencesAndIsSymmetric) {
   constexpr int size = TestFixture::kUnknowns;
   constexpr double h = 0.5;
   using Square = Matrix<double, size, size>;
@@ -139,17 +177,20 @@ TYPED_TEST(MidpointTest, HessianAgreesWithDifferencesAndIsSymmetric) {
   }
 }
 
-// d F_d / d lambda = -h g(qm, v): the constraints of the transcription.
-TYPED_TEST(MidpointTest, DerivativeByTheMultipliersIsTheConstraint) {
+// d F_d / d lambda = -h (g(qm, v) + P lambda): the constraints of the transcription.
+TYPED_TEST(MidpointDerivativesTest, DerivativeByTheMultipliersIsTheConstraint) {
   constexpr int n = TypeParam::kDof;
-  constexpr int k = TypeParam::kMultipliers;
+  constexpr int k = TestFixture::kMultipliers;
   constexpr double h = 0.5;
   const auto x = test::random_vector<TestFixture::kUnknowns>(this->generator_);
   const Vector<double, n> q0 = x.template head<n>();
   const Vector<double, n> q1 = x.template segment<n>(n);
   const Vector<double, n> qm = 0.5 * (q0 + q1);
   const Vector<double, n> v = (q1 - q0) / h;
-  const Vector<double, k> g = this->system_.constraint(qm, v);
+  Vector<double, k> g = this->system_.constraint(qm, v);
+  if constexpr (HasGauge<std::decay_t<decltype(this->system_.scene())>>) {
+    g += this->system_.scene().gauge(qm) * x.template tail<k>();
+  }
   EXPECT_LE((this->gradient(h, x).template tail<k>() + h * g).cwiseAbs().maxCoeff(), 64 * kEps);
 }
 
@@ -157,7 +198,7 @@ TYPED_TEST(MidpointTest, DerivativeByTheMultipliersIsTheConstraint) {
 // p1 = D2 F_d with the multipliers of the midpoint, to round-off.
 TYPED_TEST(MidpointTest, MidpointRuleIsTheDiscreteLegendreTransform) {
   constexpr int n = TypeParam::kDof;
-  constexpr int k = TypeParam::kMultipliers;
+  constexpr int k = TestFixture::kMultipliers;
   using Step = Gauss<VelocityConstraints<TypeParam>, 1>;
   for (const double h : {0.3, 0.05}) {
     // v = (q1 - q0) / h magnifies the rounding of q by 1 / h.
