@@ -30,8 +30,10 @@ const std::vector<BoundaryProblemEntry>& problems() {
   return kProblems;
 }
 
-BoundaryValueProblem make_problem(const std::string& scene, const std::vector<double>& to) {
-  return {find_scene(scene).make({}, "gauss16"), std::vector<double>(to.size(), 0.0), to};
+Segment make(const std::string& scene) { return find_scene(scene).make({}, "gauss16"); }
+
+BoundaryValueProblem from_origin(const Segment& segment, const std::vector<double>& to) {
+  return {segment, std::vector<double>(to.size(), 0.0), to};
 }
 
 BoundaryTrial trial_of(const std::optional<Extremal>& extremal, double began) {
@@ -139,14 +141,14 @@ bool run_curve(const BoundaryOptions& options, const Progress& progress, Boundar
   const double all = static_cast<double>(problems().size()) * options.targets;
   double done = 0;
   for (const BoundaryProblemEntry& problem : problems()) {
-    const SceneInfo& info = find_scene(problem.scene).info;
+    const Segment segment = make(problem.scene);
     std::vector<BoundaryPoint> points;
     for (int starts = 1; starts <= kCurveStarts; starts *= 2) {
       points.push_back({problem.scene, starts, 0, 0, 0, 0});
     }
     for (int i = 0; i < options.targets; ++i) {
       if (progress && !progress(done++ / all)) return false;
-      const auto target = make_problem(problem.scene, random_target(info, options.seed, i));
+      const auto target = from_origin(segment, random_target(segment, options.seed, i));
       add_to_curve(try_starts(solver, target, options, kCurveStarts), points);
     }
     result.curve.insert(result.curve.end(), points.begin(), points.end());
@@ -180,7 +182,7 @@ std::optional<BoundaryResult> run_boundary_benchmark(const BoundaryOptions& opti
   const double all = static_cast<double>(problems().size() * solvers.size());
   double done = 0;
   for (BoundaryProblemEntry problem : problems()) {
-    const BoundaryValueProblem joined = make_problem(problem.scene, problem.to);
+    const BoundaryValueProblem joined = from_origin(make(problem.scene), problem.to);
     std::vector<std::vector<BoundaryTrial>> trials;
     for (const BoundarySolver& solver : solvers) {
       if (table && !table(done++ / all)) return std::nullopt;

@@ -25,8 +25,9 @@ extremal is checked by an independent integration at a tighter setting: its larg
 is "error" in the table and "endpoint_error" in the JSON. There, "hits" counts the starts that led to
 an extremal or a mirror partner, and "missed_estimate" is Chao's estimate of how many were not
 found. On failure "reason" is a code, in the order of how far the best attempt came:
-no-start-converged, guess-failed, not-refined, flow-failed, not-joined, not-verified, beyond-double
-(round-off exceeds the tolerance), too-long (for --max-length); "message" says more and what to try.
+no-start-converged, singular-coordinates (most paths ran into one), guess-failed, not-refined,
+flow-failed, not-joined, not-verified, beyond-double (round-off exceeds the tolerance), too-long (for
+--max-length); "message" says more and what to try.
 Angles are radians; pi/2 and -3*pi/4 are numbers. Units are the scene's own: see
 `carnot scenes SCENE`.
 

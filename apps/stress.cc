@@ -23,11 +23,12 @@ namespace carnot::apps {
 namespace {
 
 constexpr const char* kFooter = R"(
-From the origin to targets drawn uniformly, positions within 3, angles within pi, on the cover; each
-the default search for one geodesic on one thread, many at a time. "solved" has been verified by an
-independent integration, at knots where the end point is too sensitive. Those that are not are
-counted by reason: the codes of `carnot geodesic`, and irregular-end where the constraints are
-dependent at the target; --json has them one by one, with messages. Times are CPU times.
+From the origin to targets drawn uniformly, positions within 3, angles within pi, on the cover and
+on the near side of singular coordinates; each the default search for one geodesic on one thread,
+many at a time. "solved" has been verified by an independent integration, at knots where the end
+point is too sensitive. Those that are not are counted by reason: the codes of `carnot geodesic`,
+and irregular-end where the constraints are dependent at the target; --json has them one by one,
+with messages. Times are CPU times.
 
 Examples
   carnot stress vehicle
@@ -58,7 +59,7 @@ struct Trial {
 Trial try_target(const Segment& segment, std::uint64_t seed, int i) {
   const double began = thread_seconds();
   Trial trial;
-  trial.to = random_target(segment.info, seed, i);
+  trial.to = random_target(segment, seed, i);
   GeodesicOptions options;
   options.seed = seed;
   options.threads = 1;

@@ -226,6 +226,11 @@ bool tangent_projector(const void* opaque, double t, const double* z, double* pr
 }
 
 template <class B>
+double chart(const void* opaque, const double* q) {
+  return B::from(opaque).system.scene().chart(Vector<double, B::n>(view<B::n>(q)));
+}
+
+template <class B>
 std::shared_ptr<const void> branch(
     const void* opaque, double t, const double* q, const double* p, const double* lambda) {
   const B& bound = B::from(opaque);
@@ -259,6 +264,7 @@ Segment bind(const Scene& scene, const Method& method, B bound) {
   segment.calls.audited_flow = audited_flow<B>;
   segment.calls.evaluate = evaluate<B>;
   segment.calls.momentum = momentum<B>;
+  if constexpr (HasChart<Scene>) segment.calls.chart = chart<B>;
   if constexpr (HasBranches<System>) segment.calls.branch = branch<B>;
   if constexpr (HasHolonomic<Scene>) {
     segment.holonomic = Scene::kHolonomic;

@@ -123,6 +123,11 @@ struct Segment {
       double t, const double* q, const double* p, double* q_dot, double* lambda) const {
     return calls.evaluate(system.get(), t, q, p, q_dot, lambda);
   }
+  // Vanishes where the coordinates are singular; 1 for a scene where they nowhere are. A path from
+  // one sign to the other passes such a point.
+  [[nodiscard]] double chart(const double* q) const {
+    return calls.chart != nullptr ? calls.chart(system.get(), q) : 1.0;
+  }
   // p of the velocity, which is projected on the admissible ones first. Returns the relative
   // violation before, NaN on failure.
   double momentum(double t, const double* q, double* q_dot, const double* lambda, double* p) const {
@@ -182,6 +187,7 @@ struct Segment {
     BatchReport (*adaptive_batch)(const void*, double, double, double, int, double*, int);
     FlowSummary (*audited_flow)(const void*, const StepPlan&, double*, const AuditOptions&);
     PointValues (*evaluate)(const void*, double, const double*, const double*, double*, double*);
+    double (*chart)(const void*, const double*);
     double (*momentum)(const void*, double, const double*, double*, const double*, double*);
     std::shared_ptr<const void> (*branch)(
         const void*, double, const double*, const double*, const double*);

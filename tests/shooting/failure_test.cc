@@ -58,6 +58,12 @@ TEST(Failure, NoStartConverged) {
   EXPECT_EQ(reason_of(test::sideways(), options), Reason::kNoStartConverged);
 }
 
+// Near the steering angle pi/2 the bicycle turns on the spot for nothing: paths run into it.
+TEST(Failure, SingularCoordinates) {
+  const BoundaryValueProblem problem = test::bicycle({-1.58, 0.08, -2.4, -1.24});
+  EXPECT_EQ(reason_of(problem, {}), Reason::kSingularCoordinates);
+}
+
 TEST(Failure, GuessFailed) {
   GeodesicOptions options;
   options.guess = {1e8, 1e8, -1e8, 1e8};

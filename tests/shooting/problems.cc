@@ -94,6 +94,10 @@ BoundaryValueProblem unicycle(std::vector<double> from, std::vector<double> to) 
   return {segment("unicycle"), std::move(from), std::move(to)};
 }
 
+BoundaryValueProblem bicycle(std::vector<double> to) {
+  return {segment("bicycle"), {0, 0, 0, 0}, std::move(to)};
+}
+
 BoundaryValueProblem oscillator(std::vector<double> from, std::vector<double> to, double time) {
   return {make_segment(Oscillator{}), std::move(from), std::move(to), time};
 }

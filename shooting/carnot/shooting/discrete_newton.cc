@@ -115,6 +115,8 @@ DiscreteNewton tighten(const BoundaryValueProblem& problem,
     double reached = 0;
     for (; step >= kShortestStep; step *= 0.5) {
       equations.move(path, direction, step, trial);
+      result.left_chart = !in_one_chart(problem.segment, trial);
+      if (result.left_chart) continue;
       equations.evaluate(trial, residual, nullptr);
       reached = norm(residual);
       if (reached < (1 - 0.1 * step) * result.residual) break;

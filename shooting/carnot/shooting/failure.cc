@@ -79,16 +79,31 @@ std::string fate(Reason furthest) {
   }
 }
 
-Failure no_discrete(const BoundaryValueProblem& problem,
-                    const Search& search,
-                    const std::string& tried) {
+// What was tried, in words.
+std::string effort(const Search& search) {
+  std::string tried =
+      std::to_string(search.starts()) + (search.starts() == 1 ? " start" : " starts") + " tried";
+  if (search.blocked() > 0) {
+    tried += ", of which " + std::to_string(search.blocked()) +
+             " ran into a singularity of the coordinates";
+  }
+  return tried;
+}
+
+Failure no_discrete(const BoundaryValueProblem& problem, const Search& search) {
+  const std::string none = "no path relaxed to a discrete extremal (" + effort(search);
+  if (2 * search.blocked() > search.starts()) {
+    return {Reason::kSingularCoordinates,
+            none +
+                "): there may be no geodesic that keeps clear of it; try more --starts, ends "
+                "further from it, or other coordinates"};
+  }
   std::ostringstream residual;
   residual.precision(2);
   residual << "best residual " << search.least_residual() << " of the momentum";
   const bool collapsed = std::isinf(search.least_residual());
   return {Reason::kNoStartConverged,
-          "no path relaxed to a discrete extremal (" + tried + ", " +
-              (collapsed ? "all collapsed to the straight line" : residual.str()) +
+          none + ", " + (collapsed ? "all collapsed to the straight line" : residual.str()) +
               regularity(problem) +
               "): try more --starts, another --seed, or a target less far away"};
 }
@@ -98,8 +113,7 @@ Failure no_discrete(const BoundaryValueProblem& problem,
 Failure explain_failure(const BoundaryValueProblem& problem,
                         const Search& search,
                         const GeodesicOptions& options) {
-  const std::string tried =
-      std::to_string(search.starts()) + (search.starts() == 1 ? " start" : " starts") + " tried";
+  const std::string tried = effort(search);
   const bool joined = search.furthest() >= Reason::kNotVerified;
   const double shortest = shortest_length(search);
   if (std::isfinite(shortest)) {
@@ -118,7 +132,7 @@ Failure explain_failure(const BoundaryValueProblem& problem,
                 "): try more --starts, another --seed, a --guess, or a target less far away"};
   }
   const Path* nearest = search.nearest_discrete();
-  if (nearest == nullptr) return no_discrete(problem, search, tried);
+  if (nearest == nullptr) return no_discrete(problem, search);
   const std::vector<double> p0(nearest->momentum(0), nearest->momentum(0) + nearest->dof);
   const EndPoint end = end_point(problem, p0);
   const bool beyond = !joined && end.beyond_double;

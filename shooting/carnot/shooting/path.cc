@@ -1,6 +1,7 @@
 #include "carnot/shooting/path.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace carnot {
 
@@ -20,6 +21,31 @@ void fill_momenta(const Segment& segment, double h, Path& path) {
       path.p[(i + 1) * n + j] += at_right * gradient[n + j];
     }
   }
+}
+
+bool same_chart(const Segment& segment, const double* a, const double* b) {
+  return segment.chart(a) * segment.chart(b) > 0;
+}
+
+bool in_one_chart(const Segment& segment, const Path& path) {
+  for (int i = 0; i < path.intervals; ++i) {
+    if (!same_chart(segment, path.configuration(i), path.configuration(i + 1))) return false;
+  }
+  return true;
+}
+
+bool skims_chart_end(const Segment& segment, const Path& path) {
+  constexpr double kFactor = 2.5;
+  constexpr double kBelowEnds = 0.5;
+  const auto chart = [&](int i) { return std::abs(segment.chart(path.configuration(i))); };
+  const double ends = std::min(chart(0), chart(path.intervals));
+  for (int i = 0; i < path.intervals; ++i) {
+    const double here = chart(i);
+    const double next = chart(i + 1);
+    const double nearer = std::min(here, next);
+    if (nearer < kBelowEnds * ends && std::max(here, next) > kFactor * nearer) return true;
+  }
+  return false;
 }
 
 double discrete_action(const Segment& segment, double h, const Path& path) {

@@ -26,6 +26,16 @@ struct Path {
 // sides say, D2 F_d and -D1 F_d. They agree on a discrete extremal.
 void fill_momenta(const Segment& segment, double h, Path& path);
 
+// Whether no singularity of the coordinates parts two configurations, or one node of the path from
+// the next. A grid steps over it, and what it finds beyond has nothing to do with the scene.
+bool same_chart(const Segment& segment, const double* a, const double* b);
+bool in_one_chart(const Segment& segment, const Path& path);
+
+// Whether the path comes nearer to such a singularity than its grid resolves: the chart function,
+// below that of both ends, changes by a factor from one node to the next. (Of discrete extremals
+// those with a counterpart on finer grids stayed below 1.5, the others were above 3.9.)
+bool skims_chart_end(const Segment& segment, const Path& path);
+
 // The action of the midpoint transcription, sum_i h L.
 double discrete_action(const Segment& segment, double h, const Path& path);
 

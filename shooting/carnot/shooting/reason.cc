@@ -10,6 +10,8 @@ const char* name_of(Reason reason) {
       return "interrupted";
     case Reason::kNoStartConverged:
       return "no-start-converged";
+    case Reason::kSingularCoordinates:
+      return "singular-coordinates";
     case Reason::kGuessFailed:
       return "guess-failed";
     case Reason::kNotRefined:

@@ -5,16 +5,17 @@ namespace carnot {
 
 // How far the best attempt came, in this order.
 enum class Reason {
-  kNone,              // there is one
-  kInterrupted,       // the caller stopped the search
-  kNoStartConverged,  // no start led to a discrete extremal or, from momenta, to knots that join
-  kGuessFailed,       // the guess did not lead to knots that join
-  kNotRefined,        // discrete extremals have no counterpart on finer grids
-  kFlowFailed,        // the flow along discrete extremals cannot be integrated
-  kNotJoined,         // shooting from discrete extremals did not converge
-  kNotVerified,       // an independent integration misses the target, by more than round-off
-  kBeyondDouble,      // round-off is larger than the tolerance, or than the target is far
-  kTooLong,           // all that were found are longer than max_length
+  kNone,                 // there is one
+  kInterrupted,          // the caller stopped the search
+  kNoStartConverged,     // no start led to a discrete extremal or, from momenta, to knots that join
+  kSingularCoordinates,  // the same, and most ran into a singularity of the coordinates
+  kGuessFailed,          // the guess did not lead to knots that join
+  kNotRefined,           // discrete extremals have no counterpart on finer grids
+  kFlowFailed,           // the flow along discrete extremals cannot be integrated
+  kNotJoined,            // shooting from discrete extremals did not converge
+  kNotVerified,          // an independent integration misses the target, by more than round-off
+  kBeyondDouble,         // round-off is larger than the tolerance, or than the target is far
+  kTooLong,              // all that were found are longer than max_length
 };
 
 // "no-start-converged" and so on; "none".

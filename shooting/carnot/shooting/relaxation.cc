@@ -32,9 +32,10 @@ class Interval {
         terms_(shared.segment.dof + shared.segment.transcribed + 1),
         derivative_(terms_.size() * 2 * shared.segment.dof) {}
 
-  // At the nodes q, 2n numbers; see chain_least_squares.h.
+  // At the nodes q, 2n numbers; see chain_least_squares.h. Steps beyond the chart are refused.
   bool evaluate(const double* lambda, const double* q, double* residuals, double* jacobian) {
     const int n = shared_.segment.dof;
+    if (!same_chart(shared_.segment, q, q + n)) return false;
     for (int i = 0; i < n; ++i) {
       qm_[i] = 0.5 * (q[i] + q[n + i]);
       v_[i] = (q[n + i] - q[i]) / shared_.h;

@@ -21,12 +21,14 @@ constexpr int kSegments = 8;      // of multiple shooting; divides the intervals
 constexpr long kFirstSteps = 32;  // of the method over [0, T]
 constexpr int kRound = 8;         // starts between two looks at the list
 constexpr int kMinStarts = 16;
+constexpr int kMinEasy = 12;        // where most of them agree
 constexpr int kMaxStarts = 96;      // when the best extremal keeps changing
 constexpr int kMaxIntervals = 128;  // of the grids that paths are relaxed on
 constexpr int kArtefacts = 3;  // of a round, that are more than the rest: the grid is too coarse
 constexpr int kMaxStiffness = 2;
 constexpr int kMaxDescents = 4;  // sweeps below an extremal that is no minimum
 constexpr int kMaxStartsAll = 240;
+constexpr int kMaxBlocked = 2;           // times the limit, starts that do not count
 constexpr int kSweeps = 24;              // rounds of near hits, where more than the best is wanted
 constexpr int kEnoughHits = 3;           // of the least action, before a search for it ends
 constexpr double kRival = 0.02;          // extremals this close to the least action, relative,
@@ -51,14 +53,18 @@ bool Search::run() {
   const bool by_paths = problem_.segment.has_transcription();
   const int sweeps = by_paths && wants_more() && options_.starts == 0 ? kSweeps : 0;
   const auto goes_on = [&](double share) { return !options_.progress || options_.progress(share); };
+  // Starts that ran into the end of the chart do not count, or not before there are many.
+  const auto left = [&] {
+    const int in_vain = options_.starts > 0 ? 0 : std::min(blocked_, kMaxBlocked * limit);
+    return limit + in_vain - drawn_;
+  };
   int descents = 0;
-  while (starts_ < limit && !settled()) {
-    const double share = static_cast<double>(starts_) / limit;
+  while (left() > 0 && !settled()) {
+    const double share = static_cast<double>(drawn_) / (drawn_ + left());
     if (!goes_on(sweeps > 0 ? 0.5 * share : share)) return false;
-    const int count = std::min(kRound, limit - starts_);
+    const int count = std::min(kRound, left());
     if (by_paths && descends_ && descents < kMaxDescents) {
       sweep_round(descents++);
-      limit += kRound;
     } else {
       by_paths ? relax_round(count) : momentum_round(count);
     }
@@ -145,7 +151,8 @@ bool Search::settled() {
 
 void Search::relax_round(int count) {
   std::vector<Candidate> candidates(count);
-  parallel_for(count, threads_, [&](int i) { candidates[i] = relax_start(starts_ + i); });
+  parallel_for(count, threads_, [&](int i) { candidates[i] = relax_start(drawn_ + i); });
+  drawn_ += count;
   const Polished polished = absorb(candidates);
   const bool artefacts = polished.failed >= kArtefacts && polished.failed > polished.good;
   int stiffer = 0;
@@ -161,13 +168,14 @@ void Search::relax_round(int count) {
 void Search::momentum_round(int count) {
   std::vector<Outcome> polished(count);
   parallel_for(count, threads_, [&](int i) {
-    const std::vector<double> p0 = momentum_start(problem_, options_.seed, starts_ + i);
+    const std::vector<double> p0 = momentum_start(problem_, options_.seed, drawn_ + i);
     if (p0.empty()) return;
     const int segments = i % 2 == 0 ? kSegments : 1;
     const Knots knots = knots_of(problem_, p0, segments, kFirstSteps);
     polished[i].extremal = polish(problem_, options_, knots, &polished[i].reason);
   });
   starts_ += count;
+  drawn_ += count;
   for (const Outcome& outcome : polished) {
     const int index = add(outcome);
     if (index < 0) continue;
@@ -244,6 +252,7 @@ Search::Polished Search::absorb(const std::vector<Candidate>& candidates) {
   std::vector<std::size_t> fresh;
   for (const Candidate& candidate : candidates) {
     if (candidate.residual < least_residual_) least_residual_ = candidate.residual;
+    blocked_ += candidate.blocked ? 1 : 0;
     if (!candidate.found) continue;
     const std::size_t known = find_discrete(candidate.path);
     if (known < discrete_.size()) {
@@ -293,7 +302,8 @@ Search::Candidate Search::relax_start(int i) const {
     const double violation = relax(easy, relaxation, candidate.path).violation;
     if (!(violation < kCollapsed)) continue;
     const DiscreteNewton tightened = tighten(easy, {}, candidate.path);
-    candidate.found = tightened.converged;
+    candidate.blocked = tightened.left_chart || skims_chart_end(easy.segment, candidate.path);
+    candidate.found = tightened.converged && !candidate.blocked;
     candidate.residual = tightened.residual / largest_momentum(candidate.path);
     if (candidate.found || violation < kHeld || candidate.stiffness > 0) break;
   }

@@ -39,6 +39,8 @@ class Search {
   [[nodiscard]] std::vector<int> hits() const;
   [[nodiscard]] int starts() const { return starts_; }
   [[nodiscard]] int converged() const { return converged_; }
+  // How many starts ran into a singularity of the coordinates.
+  [[nodiscard]] int blocked() const { return blocked_; }
   // How far the best attempt came that did not become an extremal.
   [[nodiscard]] Reason furthest() const { return furthest_; }
   // The discrete extremal of least action; null where there is none. And the least residual that a
@@ -54,7 +56,8 @@ class Search {
   // A relaxed path that satisfies the discrete equations.
   struct Candidate {
     bool found = false;
-    int stiffness = 0;  // how often the penalty had to be raised
+    bool blocked = false;  // the coordinates end where it went
+    int stiffness = 0;     // how often the penalty had to be raised
     double residual = std::numeric_limits<double>::infinity();  // relative to the momenta
     Path path;
   };
@@ -127,6 +130,8 @@ class Search {
   Reason furthest_ = Reason::kNone;
   double least_residual_ = std::numeric_limits<double>::infinity();
   int starts_ = 0;
+  int drawn_ = 0;  // of the sequence of starts; the others are near hits
+  int blocked_ = 0;
   int converged_ = 0;
 };
 

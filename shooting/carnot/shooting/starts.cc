@@ -76,29 +76,18 @@ std::vector<double> amplitudes(int n, std::uint64_t seed, int i) {
   return a;
 }
 
-}  // namespace
-
-Start make_start(const BoundaryValueProblem& problem, std::uint64_t seed, int i, int intervals) {
-  constexpr double kMaxAngle = 1;      // radians
-  constexpr double kMaxPenalty = 1e6;  // beyond this the least squares lose their digits
-  constexpr std::array kFactors{1.0, 0.6, 2.0};
-  constexpr std::array kPenalties{1.0, 2.5, 1.0};
-  constexpr std::array kOuter{2, 2, 1};  // one update leaves paths loose: saddles are found too
-  constexpr int kOuterStiff = 4;
-  constexpr double kStiff = 100;
+// The straight line plus sum_m a_m sin(m pi s), in units of `size`.
+Path wiggled_line(const BoundaryValueProblem& problem,
+                  int intervals,
+                  double size,
+                  const StartScales& scales,
+                  const std::vector<double>& a) {
+  constexpr double kMaxAngle = 1;  // radians
   const int n = problem.segment.dof;
-  const StartScales scales = start_scales(problem);
-  const double ratio = scales.distance / scales.radian;
-  const bool against = scales.violation > 0.1 * scales.distance && ratio < 0.5;
-  const std::array exponents{1.0 / 3, 0.5, against ? 1.0 / 3 : 1.0};
-  const double unit = scales.radian * std::pow(ratio, exponents[i % 3]);
-  const double size = unit * kFactors[i / 3 % 3];
-  const std::vector<double> a = amplitudes(n, seed, i);
-
-  Start start;
-  start.path.intervals = intervals;
-  start.path.dof = n;
-  start.path.q.resize(static_cast<std::size_t>(intervals + 1) * n);
+  Path path;
+  path.intervals = intervals;
+  path.dof = n;
+  path.q.resize(static_cast<std::size_t>(intervals + 1) * n);
   for (int node = 0; node <= intervals; ++node) {
     const double s = static_cast<double>(node) / intervals;
     const bool end = node == 0 || node == intervals;
@@ -112,8 +101,37 @@ Start make_start(const BoundaryValueProblem& problem, std::uint64_t seed, int i,
       const double line = node == intervals
                               ? problem.to[j]
                               : problem.from[j] + s * (problem.to[j] - problem.from[j]);
-      start.path.configuration(node)[j] = line + largest * wiggle;
+      path.configuration(node)[j] = line + largest * wiggle;
     }
+  }
+  return path;
+}
+
+}  // namespace
+
+Start make_start(const BoundaryValueProblem& problem, std::uint64_t seed, int i, int intervals) {
+  constexpr double kMaxPenalty = 1e6;  // beyond this the least squares lose their digits
+  constexpr std::array kFactors{1.0, 0.6, 2.0};
+  constexpr std::array kPenalties{1.0, 2.5, 1.0};
+  constexpr std::array kOuter{2, 2, 1};  // one update leaves paths loose: saddles are found too
+  constexpr int kOuterStiff = 4;
+  constexpr double kStiff = 100;
+  constexpr int kShrinks = 8;  // of a wiggle that leaves the chart
+  constexpr double kShrink = 0.7;
+  const int n = problem.segment.dof;
+  const StartScales scales = start_scales(problem);
+  const double ratio = scales.distance / scales.radian;
+  const bool against = scales.violation > 0.1 * scales.distance && ratio < 0.5;
+  const std::array exponents{1.0 / 3, 0.5, against ? 1.0 / 3 : 1.0};
+  const double unit = scales.radian * std::pow(ratio, exponents[i % 3]);
+  double size = unit * kFactors[i / 3 % 3];
+  const std::vector<double> a = amplitudes(n, seed, i);
+
+  Start start;
+  start.path = wiggled_line(problem, intervals, size, scales, a);
+  for (int k = 0; k < kShrinks && !in_one_chart(problem.segment, start.path); ++k) {
+    size *= kShrink;
+    start.path = wiggled_line(problem, intervals, size, scales, a);
   }
   // With rho = 10 (unit / violation)^2 collapsing to the straight line, which violates the
   // constraints, costs about half the action of a path of that unit. Less, and it collapses.

@@ -10,7 +10,8 @@
 // Scale: with D the length of the straight line in the metric M and S the length of one radian,
 // the wiggle has size S (D/S)^e, e = 1/3, 1/2, 1 in turn: a displacement of size D that needs
 // brackets of order r costs a path of length D^(1/r). Where the straight line violates the
-// constraints and is short, e = 1 is hopeless and is left out.
+// constraints and is short, e = 1 is hopeless and is left out. A wiggle that leaves the chart is
+// made smaller.
 #pragma once
 
 #include <cstdint>

@@ -1,0 +1,81 @@
+// Scenes whose coordinates end somewhere: grids may not step over it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "carnot/shooting/discrete_newton.h"
+#include "carnot/shooting/geodesic.h"
+#include "carnot/shooting/starts.h"
+#include "shooting/problems.h"
+
+namespace carnot {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+BoundaryValueProblem sideways() { return test::bicycle({0, 1, 0, 0}); }
+
+TEST(SingularCoordinates, TheSegmentTellsWhereTheyAre) {
+  const Segment bicycle = sideways().segment;
+  for (const double delta : {-2.0, -0.5, 0.0, 1.5, 3.0}) {
+    const std::vector<double> q{1, 2, 3, delta};
+    EXPECT_NEAR(bicycle.chart(q.data()), std::cos(delta), 4 * kEpsilon);
+  }
+  const std::vector<double> anywhere{1, 2, 3, std::numbers::pi / 2};
+  EXPECT_EQ(test::sideways().segment.chart(anywhere.data()), 1);
+}
+
+TEST(SingularCoordinates, NoPathLeadsToTheOtherSide) {
+  EXPECT_THROW(test::bicycle({0, 1, 0, 3}).validate(), std::invalid_argument);
+  EXPECT_NO_THROW(test::bicycle({0, 1, 0, 1.5}).validate());
+  // A whole turn further the sign is the first one again: not told here.
+  EXPECT_NO_THROW(test::bicycle({0, 1, 0, 2 * std::numbers::pi}).validate());
+}
+
+TEST(SingularCoordinates, PathsStayOnTheirSide) {
+  const BoundaryValueProblem problem = sideways();
+  int blocked = 0;
+  for (int i = 0; i < 40; ++i) {
+    Start start = make_start(problem, 0, i);
+    EXPECT_TRUE(in_one_chart(problem.segment, start.path)) << "start " << i;
+    relax(problem, start.relaxation, start.path);
+    EXPECT_TRUE(in_one_chart(problem.segment, start.path)) << "relaxed " << i;
+    blocked += tighten(problem, {}, start.path).left_chart ? 1 : 0;
+    EXPECT_TRUE(in_one_chart(problem.segment, start.path)) << "tightened " << i;
+  }
+  EXPECT_GT(blocked, 0);  // the wall is needed
+}
+
+TEST(SingularCoordinates, SkimmingIsTold) {
+  const Segment segment = sideways().segment;
+  const auto skims = [&](const std::vector<double>& angles) {
+    Path path;
+    path.intervals = static_cast<int>(angles.size()) - 1;
+    path.dof = 4;
+    for (const double delta : angles) path.q.insert(path.q.end(), {0, 0, 0, delta});
+    return skims_chart_end(segment, path);
+  };
+  EXPECT_FALSE(skims({0, 0.5, 1, 0.5, 0}));
+  EXPECT_TRUE(skims({0, 1, 1.5, 1, 0}));
+  EXPECT_FALSE(skims({0, 1, 1.3, 1.4, 1.5}));  // an end may be near
+  EXPECT_FALSE(
+      skims_chart_end(test::sideways().segment, Path{1, 4, {0, 0, 0, 0, 9, 9, 9, 9}, {}, {}}));
+}
+
+// Two of length 5.9131..., mirror images, and not those of length 5.9168...
+TEST(SingularCoordinates, TheLeastIsFoundWhateverTheSeed) {
+  constexpr double kLeast = 5.9131334052082;
+  for (const int seed : {0, 3, 4, 5}) {
+    GeodesicOptions options;
+    options.seed = seed;
+    const GeodesicReport report = find_geodesics(sideways(), options);
+    ASSERT_FALSE(report.geodesics.empty()) << "seed " << seed;
+    EXPECT_NEAR(report.geodesics[0].length.value_or(0), kLeast, 1e-12) << "seed " << seed;
+  }
+}
+
+}  // namespace
+}  // namespace carnot
