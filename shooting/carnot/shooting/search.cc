@@ -62,7 +62,9 @@ bool Search::run() {
   while (left() > 0 && !settled()) {
     const double share = static_cast<double>(drawn_) / (drawn_ + left());
     if (!goes_on(sweeps > 0 ? 0.5 * share : share)) return false;
-    const int count = std::min(kRound, left());
+    // In halves from where the search may end.
+    const bool may_end = !wants_more() && 0 < starts_ && starts_ < kMinStarts;
+    const int count = std::min(may_end ? kRound / 2 : kRound, left());
     if (by_paths && descends_ && descents < kMaxDescents) {
       sweep_round(descents++);
     } else {
@@ -130,7 +132,7 @@ std::size_t Search::best() const {
 }
 
 bool Search::settled() {
-  if (options_.starts > 0 || extremals_.empty()) return false;
+  if (options_.starts > 0 || extremals_.empty() || starts_ < kMinEasy) return false;
   const bool early = starts_ < kMinStarts;
   if (early && (wants_more() || converged_ < kMostConverged * starts_)) return false;
   const ConjugateTimes& conjugate = conjugate_times_of(problem_, extremals_[best()]);
