@@ -1,9 +1,12 @@
-// Steering allocates nothing where the answer is known; the counter is tested in verification/.
+// Steering allocates nothing where the answer is known, and warm starts never do; the counter is
+// tested in verification/.
 #include <gtest/gtest.h>
 
 #include <vector>
 
+#include "carnot/shooting/geodesic.h"
 #include "carnot/shooting/steering_function.h"
+#include "carnot/shooting/warm_start.h"
 #include "shooting/problems.h"
 #include "testing/allocation_counter.h"
 
@@ -26,6 +29,21 @@ TEST(SteeringAllocationTest, KnownAnswersAllocateNothing) {
   });
   EXPECT_EQ(allocations, 0);
   EXPECT_GT(test::allocations_in([&] { distance = steer.steer(a, b).distance(); }), 0);
+}
+
+TEST(SteeringAllocationTest, WarmStartsAllocateNothing) {
+  const BoundaryValueProblem problem = test::unicycle({0, 0, 0}, {1, 1, 1});
+  const Geodesic near = find_geodesics(problem).geodesics.at(0);
+  const WarmStart start(problem, near.p0);
+  ASSERT_TRUE(start.ready());
+  const std::vector<double> to{1.01, 0.99, 1};
+  const std::vector<double> far{-20, 30, 40};
+  std::vector<double> p0(3);
+  const long allocations = test::allocations_in([&] {
+    EXPECT_TRUE(start.solve(to.data(), p0.data()).converged);
+    EXPECT_FALSE(start.solve(far.data(), p0.data()).converged);
+  });
+  EXPECT_EQ(allocations, 0);
 }
 
 #endif

@@ -136,23 +136,27 @@ WarmStartReport WarmStart::solve(const double* to, double* p0) const {
   SmallMatrix inverse;
   predict(-residual, step, inverse);
   double size = residual.cwiseAbs().maxCoeff();
-  while (report.flows < kMostFlows && size > kAim * tolerance_) {
+  const double largest = std::max(kGrows * size, tolerance_);
+  double expected = size;  // after the next step
+  while (report.flows < kMostFlows) {
+    const bool arrived = size <= kAim * tolerance_;
+    const bool last = arrived || expected <= kAim * tolerance_;
     if (report.flows > 0) step = -inverse.lazyProduct(residual);
+    if (arrived) step.setZero();
     p += step;
     ++report.flows;
-    if (!end_of(plan_, p, end)) return report;
+    if (!end_of(last ? check_ : plan_, p, end)) return report;
     const Small change = end - target - residual;
     residual = end - target;
     const double now = residual.cwiseAbs().maxCoeff();
-    if (!(now <= std::max(kGrows * size, tolerance_))) return report;
+    if (last) report.endpoint_error = now;
+    report.converged = last && now <= tolerance_;
+    if (report.converged || !(now <= largest)) break;
+    // The model's Jacobian is that of the end of its step.
+    if (report.flows > 1 && !arrived) update(step, change, inverse);
+    expected = std::min(now, now * now / size);
     size = now;
-    if (report.flows == 1) continue;  // the model's Jacobian is that of the end of its step
-    update(step, change, inverse);
   }
-  ++report.flows;
-  if (!end_of(check_, p, end)) return report;
-  report.endpoint_error = largest_difference(end.data(), to, n);
-  report.converged = report.endpoint_error <= tolerance_;
   if (report.converged) std::copy(p.data(), p.data() + n, p0);
   return report;
 }

@@ -4,7 +4,8 @@
 // each target the quadratic model is solved first; then flows and Broyden's updates of the inverse
 // Jacobian lead to the target, superlinearly (Dennis & Schnabel, Numerical Methods for
 // Unconstrained Optimization and Nonlinear Equations, 8.1). Steps, and how well their stages are
-// solved, are those of automatic_flow.h.
+// solved, are those of automatic_flow.h; the flow that should arrive takes stricter ones, and its
+// end is the check.
 #pragma once
 
 #include <Eigen/Core>
