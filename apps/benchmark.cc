@@ -154,16 +154,13 @@ std::vector<BenchmarkScene> run_scenes(const std::vector<BenchmarkTrajectory>& t
   const TimingOptions timing = options.quick ? TimingOptions{2e-4, 3} : TimingOptions{};
   std::vector<BenchmarkScene> scenes;
   for (const BenchmarkTrajectory& trajectory : trajectories) {
-    const auto part = [&](double begin, double share) -> Progress {
-      const auto first = static_cast<double>(scenes.size());
-      const auto all = static_cast<double>(trajectories.size());
-      return [=, &progress](double done) { return progress((first + begin + share * done) / all); };
-    };
+    const auto all = static_cast<double>(trajectories.size());
+    const Progress one = part_of(progress, static_cast<double>(scenes.size()) / all, 1 / all);
     BenchmarkScene scene;
     scene.problem = benchmark_problem(trajectory);
-    scene.reference = cached_reference(trajectory, part(0, kReference));
+    scene.reference = cached_reference(trajectory, part_of(one, 0, kReference));
     const auto contestants = contestants_of(scene.problem, options);
-    if (!run_contest(contestants, timing, part(kReference, 1 - kReference), scene)) {
+    if (!run_contest(contestants, timing, part_of(one, kReference, 1 - kReference), scene)) {
       throw std::runtime_error("stopped");
     }
     scenes.push_back(std::move(scene));

@@ -11,6 +11,7 @@
 #include "carnot/shooting/polish.h"
 #include "carnot/shooting/relaxation.h"
 #include "carnot/shooting/starts.h"
+#include "progress_bar.h"
 #include "random_target.h"
 #include "scene_choice.h"
 
@@ -173,11 +174,7 @@ std::optional<BoundaryResult> run_boundary_benchmark(const BoundaryOptions& opti
                                                      const std::vector<BoundarySolver>& solvers,
                                                      const Progress& progress) {
   constexpr double kTable = 0.5;  // of the work
-  const auto part = [&progress](double begin, double share) -> Progress {
-    if (!progress) return {};
-    return [&progress, begin, share](double done) { return progress(begin + share * done); };
-  };
-  const Progress table = part(0, kTable);
+  const Progress table = part_of(progress, 0, kTable);
   BoundaryResult result;
   const double all = static_cast<double>(problems().size() * solvers.size());
   double done = 0;
@@ -196,7 +193,7 @@ std::optional<BoundaryResult> run_boundary_benchmark(const BoundaryOptions& opti
     }
     result.problems.push_back(problem);
   }
-  if (!run_curve(options, part(kTable, 1 - kTable), result)) return std::nullopt;
+  if (!run_curve(options, part_of(progress, kTable, 1 - kTable), result)) return std::nullopt;
   return result;
 }
 

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "carnot/parallel.h"
+#include "progress_bar.h"
 #include "scene_choice.h"
 
 namespace carnot::apps {
@@ -137,10 +138,6 @@ std::optional<EnergyResult> run_energy(const EnergyOptions& options,
                                        const std::vector<Contestant>& peers,
                                        const Progress& progress) {
   constexpr double kDrift = 0.3;  // of the work
-  const auto part = [&progress](double begin, double share) -> Progress {
-    if (!progress) return {};
-    return [&progress, begin, share](double done) { return progress(begin + share * done); };
-  };
   EnergyResult result;
   result.drift.problem = energy_problem();
   const BenchmarkLadder ladder{options.quick};
@@ -150,8 +147,8 @@ std::optional<EnergyResult> run_energy(const EnergyOptions& options,
   }
   all.insert(all.end(), peers.begin(), peers.end());
   const TimingOptions timing = options.quick ? TimingOptions{2e-4, 1} : TimingOptions{2e-3, 5};
-  if (!run_contest(all, timing, part(0, kDrift), result.drift)) return std::nullopt;
-  result.growth = grow(options, part(kDrift, 1 - kDrift));
+  if (!run_contest(all, timing, part_of(progress, 0, kDrift), result.drift)) return std::nullopt;
+  result.growth = grow(options, part_of(progress, kDrift, 1 - kDrift));
   if (result.growth.empty()) return std::nullopt;
   return result;
 }

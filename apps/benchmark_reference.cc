@@ -15,6 +15,7 @@
 #include "carnot/scenes/vehicle.h"
 #include "carnot/scenes/vehicle_cosine.h"
 #include "carnot/velocity_constraints.h"
+#include "progress_bar.h"
 
 namespace carnot::apps {
 namespace {
@@ -53,12 +54,8 @@ Vector<Quad, 2 * Scene::kDof> end_point(const BenchmarkTrajectory& trajectory,
 template <class Scene>
 BenchmarkReference compute(const BenchmarkTrajectory& trajectory, const Progress& progress) {
   const long count = trajectory.duration > 10 ? kLongCount : kCount;
-  const auto part = [&](double begin, double share) -> Progress {
-    if (!progress) return {};
-    return [&progress, begin, share](double done) { return progress(begin + share * done); };
-  };
-  const auto coarse = end_point<Scene>(trajectory, count, part(0, 1.0 / 3));
-  const auto fine = end_point<Scene>(trajectory, 2 * count, part(1.0 / 3, 2.0 / 3));
+  const auto coarse = end_point<Scene>(trajectory, count, part_of(progress, 0, 1.0 / 3));
+  const auto fine = end_point<Scene>(trajectory, 2 * count, part_of(progress, 1.0 / 3, 2.0 / 3));
   BenchmarkReference reference;
   for (int i = 0; i < fine.size(); ++i) {
     const Quad difference = abs(Quad(fine[i] - coarse[i]));

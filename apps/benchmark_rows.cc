@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "progress_bar.h"
+
 namespace carnot::apps {
 namespace {
 
@@ -64,13 +66,10 @@ bool run_contest(const std::vector<Contestant>& contestants,
                  const Progress& progress,
                  BenchmarkScene& scene) {
   constexpr double kTrial = 0.1;  // of the work
-  const auto part = [&progress](double begin, double share) -> Progress {
-    if (!progress) return {};
-    return [&progress, begin, share](double done) { return progress(begin + share * done); };
-  };
   TimedCalls timed;
-  if (!try_all(contestants, part(0, kTrial), scene, timed)) return false;
-  const std::vector<double> seconds = median_seconds(timed.calls, timing, part(kTrial, 1 - kTrial));
+  if (!try_all(contestants, part_of(progress, 0, kTrial), scene, timed)) return false;
+  const std::vector<double> seconds =
+      median_seconds(timed.calls, timing, part_of(progress, kTrial, 1 - kTrial));
   if (seconds.size() != timed.calls.size()) return false;
   for (std::size_t i = 0; i < seconds.size(); ++i) {
     scene.rows[i].seconds = seconds[i] / static_cast<double>(timed.trajectories[i]);

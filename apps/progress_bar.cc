@@ -20,6 +20,11 @@ std::string with_prefix(double rate) {
 
 }  // namespace
 
+Progress part_of(const Progress& whole, double begin, double share) {
+  if (!whole) return {};
+  return [whole, begin, share](double done) { return whole(begin + share * done); };
+}
+
 std::string progress_line(double fraction, double seconds, double total, const std::string& unit) {
   constexpr int kWidth = 30;
   fraction = std::clamp(fraction, 0.0, 1.0);

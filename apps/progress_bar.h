@@ -37,6 +37,10 @@ class ProgressBar {
   std::mutex mutex_;
 };
 
+// The progress of a part of some work: the share `share` of it, from `begin` on. Empty where the
+// whole has none.
+Progress part_of(const Progress& whole, double begin, double share);
+
 // "[####......]  40 %  12.3 k steps/s  0:07 left".
 std::string progress_line(double fraction, double seconds, double total, const std::string& unit);
 

@@ -64,20 +64,12 @@ TEST(EnergyBenchmark, HoldsItsContract) {
 }
 
 TEST(EnergyBenchmark, RefusesWhatItDoesNotKnow) {
-  const Sandbox sandbox;
-  const auto refused = [&](std::vector<std::string> words, const std::string& why) {
-    words.insert(words.begin(), "benchmark");
-    const Outcome outcome = sandbox.run(words);
-    EXPECT_EQ(outcome.status, 2);
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_THAT(outcome.err, HasSubstr(why));
-  };
-  refused({"--energy", "--boundary-value"}, "--energy");
-  refused({"--energy", "vehicle"}, "SCENE");
-  refused({"--energy", "--steps", "10"}, "--steps");
-  refused({"--energy", "--starts", "3"}, "--starts");
-  refused({"--steps", "1000"}, "--energy");
-  refused({"--threads", "2"}, "--threads");
+  expect_refused({"benchmark", "--energy", "--boundary-value"}, HasSubstr("--energy"));
+  expect_refused({"benchmark", "--energy", "vehicle"}, HasSubstr("SCENE"));
+  expect_refused({"benchmark", "--energy", "--steps", "10"}, HasSubstr("--steps"));
+  expect_refused({"benchmark", "--energy", "--starts", "3"}, HasSubstr("--starts"));
+  expect_refused({"benchmark", "--steps", "1000"}, HasSubstr("--energy"));
+  expect_refused({"benchmark", "--threads", "2"}, HasSubstr("--threads"));
 }
 
 // The stages are good to the change times one more contraction.
