@@ -75,7 +75,7 @@ Trial try_target(const Segment& segment, std::uint64_t seed, int i) {
       trial.label = report.geodesics[0].label;
     }
   } catch (const std::invalid_argument& error) {  // e.g. constraints that are dependent there
-    trial.reason = "irregular-end";
+    trial.reason = name_of(Reason::kIrregularEnd);
     trial.message = error.what();
   }
   trial.seconds = thread_seconds() - began;

@@ -57,7 +57,7 @@ void expect_continuous(const SteeringFunction& steer,
                        double faster = 1) {
   constexpr int kSteps = 257;  // not a multiple of the samples that are kept
   const double d = steer.distance(a, b);
-  ASSERT_TRUE(std::isfinite(d)) << steer.steer(a, b).reason();
+  ASSERT_TRUE(std::isfinite(d)) << steer.steer(a, b).message();
   Pose before = a;
   for (int i = 1; i <= kSteps; ++i) {
     const Pose q = point(steer, a, b, static_cast<double>(i) / kSteps);
@@ -245,20 +245,34 @@ TEST(SteeringFunctionTest, MemoryChangesNoAnswer) {
   }
 }
 
-TEST(SteeringFunctionTest, FailuresHaveAReason) {
+TEST(SteeringFunctionTest, SearchesThatFailHaveTheirCode) {
+  SteeringOptions options;
+  options.tolerance = 1e-22;
+  const SteeringFunction steer(test::sideways().segment, options);
+  const Steering way = steer.steer(Pose{0, 0, 0, 0}, Pose{0, 1, 0, 0});
+  EXPECT_FALSE(way.found());
+  EXPECT_EQ(way.reason(), Reason::kBeyondDouble);
+  EXPECT_FALSE(way.message().empty());
+  const Steering found = unicycle().steer(Pose{0, 0, 0}, Pose{1, 1, 1});
+  EXPECT_EQ(found.reason(), Reason::kNone);
+  EXPECT_TRUE(found.message().empty());
+}
+
+TEST(SteeringFunctionTest, RefusalsHaveAReason) {
   const Pose a{0, 0, 0};
   Pose q{7, 8, 9};
   const auto fails = [&](const SteeringFunction& steer, const Pose& b, const char* why) {
     const Steering way = steer.steer(a, b);
     EXPECT_FALSE(way.found());
     EXPECT_EQ(way.geodesic(), nullptr);
-    EXPECT_THAT(way.reason(), HasSubstr(why));
+    EXPECT_EQ(way.reason(), Reason::kIrregularEnd);
+    EXPECT_THAT(way.message(), HasSubstr(why));
     EXPECT_EQ(way.distance(), std::numeric_limits<double>::infinity());
     EXPECT_EQ(steer.distance(a, b), std::numeric_limits<double>::infinity());
     EXPECT_FALSE(steer.interpolate(a, b, 0.5, q));
     EXPECT_EQ(q, (Pose{7, 8, 9}));
     ASSERT_EQ(steer.alternatives(a, b).size(), 1);
-    EXPECT_THAT(steer.alternatives(a, b)[0].reason(), HasSubstr(why));
+    EXPECT_THAT(steer.alternatives(a, b)[0].message(), HasSubstr(why));
   };
   fails(unicycle(), {0, 0}, "2 components, the scene has 3");
   fails(unicycle(), {0, NAN, 0}, "not a finite number");

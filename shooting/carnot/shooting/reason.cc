@@ -8,6 +8,8 @@ const char* name_of(Reason reason) {
       return "none";
     case Reason::kInterrupted:
       return "interrupted";
+    case Reason::kIrregularEnd:
+      return "irregular-end";
     case Reason::kNoStartConverged:
       return "no-start-converged";
     case Reason::kSingularCoordinates:

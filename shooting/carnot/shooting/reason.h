@@ -5,8 +5,9 @@ namespace carnot {
 
 // How far the best attempt came, in this order.
 enum class Reason {
-  kNone,                 // there is one
-  kInterrupted,          // the caller stopped the search
+  kNone,          // there is one
+  kInterrupted,   // the caller stopped the search
+  kIrregularEnd,  // refused: an end is no regular configuration, or singular coordinates part them
   kNoStartConverged,     // no start led to a discrete extremal or, from momenta, to knots that join
   kSingularCoordinates,  // the same, and most ran into a singularity of the coordinates
   kGuessFailed,          // the guess did not lead to knots that join

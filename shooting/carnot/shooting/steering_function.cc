@@ -31,9 +31,10 @@ class SteeringFunction::Implementation {
     return found;
   }
 
-  [[nodiscard]] static SteeringMemory::Value refused(std::string reason) {
+  [[nodiscard]] static SteeringMemory::Value refused(std::string message) {
     auto answer = std::make_shared<SteeringAnswer>();
-    answer->reason = std::move(reason);
+    answer->reason = Reason::kIrregularEnd;
+    answer->message = std::move(message);
     return answer;
   }
 
@@ -43,7 +44,8 @@ class SteeringFunction::Implementation {
 };
 
 bool Steering::found() const { return answer_->geodesic.has_value(); }
-const std::string& Steering::reason() const { return answer_->reason; }
+Reason Steering::reason() const { return answer_->reason; }
+const std::string& Steering::message() const { return answer_->message; }
 double Steering::distance() const { return answer_->distance(sense_); }
 const Geodesic* Steering::geodesic() const { return found() ? &*answer_->geodesic : nullptr; }
 

@@ -50,8 +50,10 @@ class SteeringSearch;
 class Steering {
  public:
   [[nodiscard]] bool found() const;
-  // Why there is none, and what to try; empty where there is one.
-  [[nodiscard]] const std::string& reason() const;
+  // Why there is none, as a code, and in words with what to try; kNone and empty where there is
+  // one.
+  [[nodiscard]] Reason reason() const;
+  [[nodiscard]] const std::string& message() const;
   // The length, or the action where the scene has no length; infinite where nothing was found.
   [[nodiscard]] double distance() const;
   // What is known of it, in the frame and the direction that were solved and before a contraction;

@@ -114,13 +114,17 @@ std::string SteeringSearch::refusal(std::span<const double> from,
 
 std::vector<Geodesic> SteeringSearch::solve(const BoundaryValueProblem& problem,
                                             const GeodesicOptions& options,
-                                            std::string& reason) {
+                                            SteeringAnswer& failure) {
   try {
     GeodesicReport report = find_geodesics(problem, options);
-    if (reason.empty()) reason = report.message;
+    if (failure.reason == Reason::kNone) {
+      failure.reason = report.reason;
+      failure.message = report.message;
+    }
     return std::move(report.geodesics);
   } catch (const std::invalid_argument& error) {  // e.g. constraints that are dependent there
-    reason = error.what();
+    failure.reason = Reason::kIrregularEnd;
+    failure.message = error.what();
     return {};
   }
 }
@@ -136,17 +140,17 @@ std::vector<std::shared_ptr<const SteeringAnswer>> SteeringSearch::answers(
     images = images_of_target(problem, std::numeric_limits<double>::infinity());
   }
   std::vector<SteeringAnswer> list;
-  std::string reason;
+  SteeringAnswer failure;
   for (const Image& image : images) {
     problem.to = image.to;
     const bool full = static_cast<int>(list.size()) >= count;
     if (full && least_action(problem) >= list.back().geodesic->action) continue;
     GeodesicOptions options = options_of_search(count);
-    std::vector<Geodesic> found = solve(problem, options, reason);
+    std::vector<Geodesic> found = solve(problem, options, failure);
     // Only the nearest image makes the distance small where the target is near.
     if (found.empty() && options.starts > 0 && &image == &images.front()) {
       options.starts = 0;
-      found = solve(problem, options, reason);
+      found = solve(problem, options, failure);
     }
     for (Geodesic& geodesic : found) {
       list.push_back(answer_of(problem, std::move(geodesic)));
@@ -158,7 +162,7 @@ std::vector<std::shared_ptr<const SteeringAnswer>> SteeringSearch::answers(
     });
     if (static_cast<int>(list.size()) > count) list.resize(count);
   }
-  if (list.empty()) list.emplace_back().reason = reason;
+  if (list.empty()) list.push_back(std::move(failure));
   std::vector<std::shared_ptr<const SteeringAnswer>> shared;
   for (SteeringAnswer& answer : list) {
     shared.push_back(std::make_shared<const SteeringAnswer>(std::move(answer)));

@@ -16,7 +16,8 @@ namespace carnot {
 
 // In the frame of the question.
 struct SteeringAnswer {
-  std::string reason;  // where there is no geodesic
+  Reason reason = Reason::kNone;  // where there is no geodesic,
+  std::string message;            // and what to try
   std::optional<Geodesic> geodesic;
   std::vector<double> target;  // the image that is reached
   std::vector<double> points;  // kSteeringSamples x 2n phase points at equidistant times
@@ -64,7 +65,7 @@ class SteeringSearch {
   void contract(const SteeringAnswer& answer, const SteeringSense& sense, double* q) const;
   [[nodiscard]] static std::vector<Geodesic> solve(const BoundaryValueProblem& problem,
                                                    const GeodesicOptions& options,
-                                                   std::string& reason);
+                                                   SteeringAnswer& failure);
   void measure_rates();
   [[nodiscard]] double least_action(const BoundaryValueProblem& problem) const;
   [[nodiscard]] double period_of(int j) const { return segment_.info.configuration[j].period; }
