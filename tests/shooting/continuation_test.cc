@@ -160,6 +160,41 @@ TEST(Continuation, FollowsBothArmsOfAPitchfork) {
 }
 
 // All circles through (0, 0, 1) go there: a continuum, which the extremals to (x, 0, 1) cross.
+// Two equal springs from q0 to -q0 + (T - pi) w: p0 = (to - q0 cos T) / sin T is smooth, -w at
+// T = pi. There any p0 leads to -q0: the Jacobian lacks two in rank, its determinant touches zero.
+TEST(Continuation, ReportsBranchPointsOfEvenMultiplicity) {
+  const auto target = [](double time) {
+    return std::vector<double>{-1 + 0.3 * (time - kPi), 0.5 * (time - kPi)};
+  };
+  const auto time_at = [](double s) { return 2 + 3 * s; };
+  const ProblemLine line{[&](double s) {
+    return test::oscillator({1, 0}, target(time_at(s)), time_at(s));
+  }};
+  const ContinuationReport report = continue_geodesic(line, geodesic_of(line.at(0)));
+  EXPECT_EQ(report.status, ContinuationStatus::kReached) << report.message;
+  expect_verified(report);
+  for (const ContinuationPoint& point : report.points) {
+    const double time = time_at(point.s);
+    const double p0 = (target(time)[0] - std::cos(time)) / std::sin(time);
+    EXPECT_NEAR(point.geodesic.p0[0], p0, kMagnified);
+    EXPECT_EQ(point.geodesic.morse_index, time < kPi ? 0 : 2);
+  }
+  ASSERT_EQ(report.branch_points.size(), 1U);
+  EXPECT_NEAR(time_at(report.branch_points[0].s), kPi, kBranchPoint);
+  EXPECT_TRUE(report.folds.empty());
+}
+
+// A pendulum that stands still on the way: p0 passes zero.
+TEST(Continuation, TheMomentumMayVanish) {
+  const BoundaryValueProblem problem = test::oscillator({1, 0}, {-1, 0}, 2);
+  const ContinuationReport report =
+      continue_geodesic(moving_target(problem, {0.5, 0}), geodesic_of(problem));
+  EXPECT_EQ(report.status, ContinuationStatus::kReached) << report.message;
+  const auto p0 = [](const ContinuationPoint& point) { return point.geodesic.p0[0]; };
+  EXPECT_LT(p0(report.points.front()), 0);
+  EXPECT_GT(p0(report.points.back()), 0);
+}
+
 TEST(Continuation, AFamilyIsAClosedCurveWithBranchPoints) {
   const BoundaryValueProblem problem = test::heisenberg_group({0, 0, 1});
   const double speed = 2 * std::sqrt(kPi);

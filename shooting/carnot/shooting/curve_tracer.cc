@@ -62,6 +62,7 @@ bool CurveTracer::set_up(Place place, const VectorXd& along) {
         curve_->start(equations_->unknowns(place.knots, place.s), equations_->from_head(along));
     if (!point) return false;
     here_ = *point;
+    last_.reset();
     curvature_.setZero(here_.x.size());
     if (equations_->growth() <= kMaxGrowth || equations_->segments() >= kMaxSegments) return true;
     place = place_of(here_.x);
@@ -86,7 +87,8 @@ bool CurveTracer::add(const CurvePoint& point) {
   const int n = place.knots.dof;
   const double size = Eigen::Map<const VectorXd>(p0.data(), n).norm();
   const double moved = largest_difference(p0.data(), extremal->geodesic.p0.data(), n);
-  if (!(moved <= kSameMomentum * size)) return false;
+  largest_momentum_ = std::max(largest_momentum_, size);  // p(0) may pass zero
+  if (!(moved <= kSameMomentum * largest_momentum_)) return false;
   steps_ = std::max(steps_, extremal->geodesic.plan.count / 2);
   if (options_.labels) complete(problem, 0, *extremal);
   report_.points.push_back({place.s, branch_, std::move(extremal->geodesic)});
@@ -152,12 +154,13 @@ bool CurveTracer::advance(std::optional<ContinuationStatus>& end) {
     auto step = attempt(step_);
     if (!step || !add(step->point)) continue;
     note_special_points(here_, step->point);
+    note_touch(step->point);
     const double worst = std::max({std::sqrt(step->point.contraction / kContraction),
                                    std::sqrt(step->point.distance / (kDistance * step_)),
                                    step->angle / kAngle});
     step_ = std::min(step_ / std::clamp(worst, 0.5, 2.0), options_.largest_step);
     curvature_ = (step->point.tangent - here_.tangent) / (step->point.x - here_.x).norm();
-    here_ = std::move(step->point);
+    last_ = std::exchange(here_, std::move(step->point));
     end = step->end;
     ++taken_;
     return true;
@@ -213,6 +216,15 @@ void CurveTracer::note_special_points(const CurvePoint& before, const CurvePoint
   // Where a curve of mirror partners turns at the branch point it is no fold.
   if (crossing && (fold - *crossing).norm() <= kSame) return;
   report_.folds.push_back(describe(fold));
+}
+
+void CurveTracer::note_touch(const CurvePoint& after) {
+  if (!last_ || last_->orientation != here_.orientation) return;
+  if (after.orientation != here_.orientation) return;
+  const double dip = here_.log_determinant;
+  if (!(dip < last_->log_determinant && dip <= after.log_determinant)) return;
+  const auto touch = curve_->locate_touch(*last_, after);
+  if (touch) report_.branch_points.push_back(describe(*touch));
 }
 
 void CurveTracer::note_crossing(const CurvePoint& before, const VectorXd& x) {

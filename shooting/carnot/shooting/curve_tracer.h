@@ -64,6 +64,8 @@ class CurveTracer {
   // Verifies a point, labels it and adds it to the list.
   [[nodiscard]] bool add(const CurvePoint& point);
   void note_special_points(const CurvePoint& before, const CurvePoint& after);
+  // A branch point of even multiplicity between the point before `here_` and the one after.
+  void note_touch(const CurvePoint& after);
   void note_crossing(const CurvePoint& before, const Eigen::VectorXd& x);
   [[nodiscard]] SpecialPoint describe(const Eigen::VectorXd& x) const;
   [[nodiscard]] Place place_of(const Eigen::VectorXd& x) const;
@@ -76,11 +78,13 @@ class CurveTracer {
   std::unique_ptr<LineEquations> equations_;
   std::unique_ptr<SolutionCurve> curve_;
   CurvePoint here_;
-  Eigen::VectorXd curvature_;   // rate of the tangent, as of the last step
-  Eigen::VectorXd first_;       // (p(0), s) at the start,
-  Eigen::VectorXd first_rate_;  // and its rate
+  std::optional<CurvePoint> last_;  // before here_, unless scales or knots have changed since
+  Eigen::VectorXd curvature_;       // rate of the tangent, as of the last step
+  Eigen::VectorXd first_;           // (p(0), s) at the start,
+  Eigen::VectorXd first_rate_;      // and its rate
   const Place* origin_ = nullptr;
   double step_ = 0;
+  double largest_momentum_ = 0;
   int taken_ = 0;
   std::vector<Crossing> crossings_;
 };

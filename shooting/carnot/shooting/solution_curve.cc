@@ -124,6 +124,42 @@ VectorXd SolutionCurve::locate(const CurvePoint& a, const CurvePoint& b, const T
   return between(low, high, share);
 }
 
+std::optional<VectorXd> SolutionCurve::locate_touch(const CurvePoint& a, const CurvePoint& b) {
+  constexpr int kMaxIterations = 40;
+  constexpr double kGolden = 0.3819660112501051;
+  constexpr double kClose = 1e-7;     // of the chord
+  constexpr double kVanishes = 1e-6;  // of the determinant: Newton's method ends beside the point
+  const VectorXd chord = b.x - a.x;
+  double low = 0;
+  double least = kGolden;
+  double high = 1;
+  CurvePoint at_low = a;
+  CurvePoint at_high = b;
+  // The nearer the singular Jacobian, the better must the guess be.
+  const auto at = [&](double share) {
+    const VectorXd guess = between(at_low, at_high, (share - low) / (high - low));
+    return correct(guess, chord.normalized(), chord);
+  };
+  auto at_least = at(least);
+  for (int i = 0; at_least && high - low > kClose && i < kMaxIterations; ++i) {
+    const bool right = high - least > least - low;
+    const double share = least + kGolden * (right ? high - least : low - least);
+    const auto trial = at(share);
+    if (!trial) break;
+    const bool lower = trial->log_determinant < at_least->log_determinant;
+    (lower == right ? low : high) = lower ? least : share;
+    (lower == right ? at_low : at_high) = lower ? *at_least : *trial;
+    if (!lower) continue;
+    least = share;
+    at_least = trial;
+  }
+  const double outside = std::min(a.log_determinant, b.log_determinant);
+  if (!at_least || at_least->log_determinant > outside + std::log(kVanishes)) return std::nullopt;
+  const double falls = std::exp(0.5 * (at_low.log_determinant - outside));
+  const double rises = std::exp(0.5 * (at_high.log_determinant - outside));
+  return between(at_low, at_high, falls / (falls + rises));
+}
+
 std::optional<VectorXd> SolutionCurve::other_direction(const VectorXd& x, const VectorXd& tangent) {
   VectorXd residual;
   MatrixXd jacobian;

@@ -2,9 +2,10 @@
 //
 // Where F' has full rank its kernel is the tangent, and F'(x) with any row that is not orthogonal
 // to the tangent below it is nonsingular: Newton's method works at folds, where F_u is singular. At
-// a simple branch point the rank drops by one and det (F'; tangent') changes sign.
-// Sources: H. B. Keller, Lectures on Numerical Methods in Bifurcation Problems (1987), 4-5;
-// Allgower & Georg, Introduction to Numerical Continuation Methods (SIAM 2003), 2, 6 and 8.
+// a simple branch point the rank drops by one and det (F'; tangent') changes sign; where it drops
+// by two, as symmetries make it, the determinant touches zero. Sources: H. B. Keller, Lectures on
+// Numerical Methods in Bifurcation Problems (1987), 4-5; Allgower & Georg, Introduction to
+// Numerical Continuation Methods (SIAM 2003), 2, 6 and 8.
 #pragma once
 
 #include <Eigen/Core>
@@ -46,6 +47,12 @@ class SolutionCurve {
   // (Illinois) as far as Newton's method goes, then by interpolation.
   using Test = std::function<double(const CurvePoint&)>;
   [[nodiscard]] Eigen::VectorXd locate(const CurvePoint& a, const CurvePoint& b, const Test& test);
+
+  // Between a and b, of one orientation, with a smaller determinant in between: the point where it
+  // touches zero, as where F' lacks two in rank; nothing where it does not. By golden section of
+  // its size, whose square root falls and rises linearly there.
+  [[nodiscard]] std::optional<Eigen::VectorXd> locate_touch(const CurvePoint& a,
+                                                            const CurvePoint& b);
 
   // At a point where F' lacks one in rank: the direction of its kernel that is normal to `tangent`.
   [[nodiscard]] std::optional<Eigen::VectorXd> other_direction(const Eigen::VectorXd& x,
