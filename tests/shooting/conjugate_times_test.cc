@@ -12,7 +12,7 @@ namespace carnot {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kTolerance = 1e-11;  // the bisection stops at 1e-13 of t
+constexpr double kTolerance = 1e-12;  // the bisection stops at 1e-13 of t
 
 ConjugateTimes times_of(const BoundaryValueProblem& problem,
                         const std::vector<double>& p0,
