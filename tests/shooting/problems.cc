@@ -98,6 +98,10 @@ BoundaryValueProblem bicycle(std::vector<double> to) {
   return {segment("bicycle"), {0, 0, 0, 0}, std::move(to)};
 }
 
+BoundaryValueProblem satellite(std::vector<double> to) {
+  return {segment("satellite"), {0, 0, 0}, std::move(to)};
+}
+
 BoundaryValueProblem oscillator(std::vector<double> from, std::vector<double> to, double time) {
   return {make_segment(Oscillator{}), std::move(from), std::move(to), time};
 }

@@ -21,6 +21,7 @@ BoundaryValueProblem heisenberg_group(std::vector<double> to, double time = 1); 
 BoundaryValueProblem martinet(std::vector<double> to);                           // the same
 BoundaryValueProblem unicycle(std::vector<double> from, std::vector<double> to);
 BoundaryValueProblem bicycle(std::vector<double> to);  // from the origin; singular at delta = pi/2
+BoundaryValueProblem satellite(std::vector<double> to);  // the same; at theta = pi/2
 
 // Two equal springs, no constraint: q'' = -q. Every extremal is conjugate, doubly, at t = pi.
 BoundaryValueProblem oscillator(std::vector<double> from, std::vector<double> to, double time);

@@ -1,10 +1,10 @@
 // Scenes whose coordinates end somewhere: grids may not step over it.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <stdexcept>
 
 #include "carnot/shooting/discrete_newton.h"
 #include "carnot/shooting/geodesic.h"
@@ -13,6 +13,8 @@
 
 namespace carnot {
 namespace {
+
+using ::testing::HasSubstr;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
@@ -28,11 +30,17 @@ TEST(SingularCoordinates, TheSegmentTellsWhereTheyAre) {
   EXPECT_EQ(test::sideways().segment.chart(anywhere.data()), 1);
 }
 
-TEST(SingularCoordinates, NoPathLeadsToTheOtherSide) {
-  EXPECT_THROW(test::bicycle({0, 1, 0, 3}).validate(), std::invalid_argument);
-  EXPECT_NO_THROW(test::bicycle({0, 1, 0, 1.5}).validate());
-  // A whole turn further the sign is the first one again: not told here.
-  EXPECT_NO_THROW(test::bicycle({0, 1, 0, 2 * std::numbers::pi}).validate());
+// A turn about one axis of the body passes the singularity of the angles and is a geodesic.
+TEST(SingularCoordinates, WhereTheStraightLinePassesAPathMay) {
+  const GeodesicReport report = find_geodesics(test::satellite({0, 2, 0}));
+  ASSERT_FALSE(report.geodesics.empty()) << report.message;
+  EXPECT_NEAR(report.geodesics[0].action, 2, 4 * kEpsilon);
+}
+
+TEST(SingularCoordinates, EndsThatTheyPartAreToldOnFailure) {
+  const GeodesicReport report = find_geodesics(test::satellite({0.3, 2, 0.1}));
+  EXPECT_TRUE(report.geodesics.empty());
+  EXPECT_THAT(report.message, HasSubstr("ends that a singularity of the coordinates parts"));
 }
 
 TEST(SingularCoordinates, PathsStayOnTheirSide) {

@@ -34,11 +34,6 @@ void check_end(const char* name, const std::vector<double>& q, const Segment& se
 void BoundaryValueProblem::validate() const {
   check_end("from", from, segment);
   check_end("to", to, segment);
-  if (segment.chart(from.data()) * segment.chart(to.data()) < 0) {
-    throw std::invalid_argument(
-        "from and to lie on two sides of a singularity of the coordinates, which no path passes: "
-        "give `to` in coordinates on the side of `from`, or use others, such as a unit quaternion");
-  }
   if (!(time > 0) || !std::isfinite(time)) {
     throw std::invalid_argument("time is " + std::to_string(time) + ", must be > 0");
   }

@@ -26,7 +26,7 @@ struct BoundaryValueProblem {
         time(duration) {}
 
   // Throws std::invalid_argument: wrong lengths, values that are not finite, T <= 0, constraints
-  // that are dependent at an end, ends that a singularity of the coordinates parts.
+  // that are dependent at an end.
   void validate() const;
 };
 

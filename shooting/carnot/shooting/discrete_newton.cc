@@ -100,6 +100,7 @@ DiscreteNewton tighten(const BoundaryValueProblem& problem,
   std::vector<double> direction;
   std::vector<double> simplified;
   Path trial = path;
+  const bool walled = in_one_chart(problem.segment, path);
   DiscreteNewton result;
   const double scale = equations.evaluate(path, residual, &matrix);
   result.residual = norm(residual);
@@ -115,7 +116,7 @@ DiscreteNewton tighten(const BoundaryValueProblem& problem,
     double reached = 0;
     for (; step >= kShortestStep; step *= 0.5) {
       equations.move(path, direction, step, trial);
-      result.left_chart = !in_one_chart(problem.segment, trial);
+      result.left_chart = walled && !in_one_chart(problem.segment, trial);
       if (result.left_chart) continue;
       equations.evaluate(trial, residual, nullptr);
       reached = norm(residual);

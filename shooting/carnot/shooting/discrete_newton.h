@@ -6,8 +6,8 @@
 //
 // which is the midpoint rule with momenta that match at every node. The Jacobian holds the exact
 // second derivatives; ordered lambda_0, q_1, lambda_1, q_2, ..., it is banded. Steps are halved
-// while the residual does not fall or the path leaves the chart. Minimisers and saddles attract
-// alike.
+// while the residual does not fall or the path leaves the one chart that it is in. Minimisers and
+// saddles attract alike.
 #pragma once
 
 #include "carnot/shooting/boundary_value_problem.h"

@@ -79,20 +79,25 @@ std::string fate(Reason furthest) {
   }
 }
 
+bool parted(const BoundaryValueProblem& problem) {
+  return !same_chart(problem.segment, problem.from.data(), problem.to.data());
+}
+
 // What was tried, in words.
-std::string effort(const Search& search) {
+std::string effort(const BoundaryValueProblem& problem, const Search& search) {
   std::string tried =
       std::to_string(search.starts()) + (search.starts() == 1 ? " start" : " starts") + " tried";
   if (search.blocked() > 0) {
     tried += ", of which " + std::to_string(search.blocked()) +
              " ran into a singularity of the coordinates";
   }
+  if (parted(problem)) tried += ", between ends that a singularity of the coordinates parts";
   return tried;
 }
 
 Failure no_discrete(const BoundaryValueProblem& problem, const Search& search) {
-  const std::string none = "no path relaxed to a discrete extremal (" + effort(search);
-  if (2 * search.blocked() > search.starts()) {
+  const std::string none = "no path relaxed to a discrete extremal (" + effort(problem, search);
+  if (parted(problem) || 2 * search.blocked() > search.starts()) {
     return {Reason::kSingularCoordinates,
             none +
                 "): there may be no geodesic that keeps clear of it; try more --starts, ends "
@@ -113,7 +118,7 @@ Failure no_discrete(const BoundaryValueProblem& problem, const Search& search) {
 Failure explain_failure(const BoundaryValueProblem& problem,
                         const Search& search,
                         const GeodesicOptions& options) {
-  const std::string tried = effort(search);
+  const std::string tried = effort(problem, search);
   const bool joined = search.furthest() >= Reason::kNotVerified;
   const double shortest = shortest_length(search);
   if (std::isfinite(shortest)) {

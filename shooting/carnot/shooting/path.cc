@@ -37,6 +37,7 @@ bool in_one_chart(const Segment& segment, const Path& path) {
 bool skims_chart_end(const Segment& segment, const Path& path) {
   constexpr double kFactor = 2.5;
   constexpr double kBelowEnds = 0.5;
+  if (!in_one_chart(segment, path)) return false;
   const auto chart = [&](int i) { return std::abs(segment.chart(path.configuration(i))); };
   const double ends = std::min(chart(0), chart(path.intervals));
   for (int i = 0; i < path.intervals; ++i) {

@@ -27,11 +27,13 @@ struct Path {
 void fill_momenta(const Segment& segment, double h, Path& path);
 
 // Whether no singularity of the coordinates parts two configurations, or one node of the path from
-// the next. A grid steps over it, and what it finds beyond has nothing to do with the scene.
+// the next. A grid steps over it for little, and what it finds beyond has seldom to do with the
+// scene; so a path that is in one chart is kept there. Some geodesics do pass, those that move one
+// coordinate only, and are found where the straight line between the ends passes too.
 bool same_chart(const Segment& segment, const double* a, const double* b);
 bool in_one_chart(const Segment& segment, const Path& path);
 
-// Whether the path comes nearer to such a singularity than its grid resolves: the chart function,
+// Whether a path in one chart comes nearer to its end than the grid resolves: the chart function,
 // below that of both ends, changes by a factor from one node to the next. (Of discrete extremals
 // those with a counterpart on finer grids stayed below 1.5, the others were above 3.9.)
 bool skims_chart_end(const Segment& segment, const Path& path);

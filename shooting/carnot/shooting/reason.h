@@ -5,11 +5,11 @@ namespace carnot {
 
 // How far the best attempt came, in this order.
 enum class Reason {
-  kNone,          // there is one
-  kInterrupted,   // the caller stopped the search
-  kIrregularEnd,  // refused: an end is no regular configuration, or singular coordinates part them
+  kNone,                 // there is one
+  kInterrupted,          // the caller stopped the search
+  kIrregularEnd,         // refused: an end is no regular configuration
   kNoStartConverged,     // no start led to a discrete extremal or, from momenta, to knots that join
-  kSingularCoordinates,  // the same, and most ran into a singularity of the coordinates
+  kSingularCoordinates,  // the same, and most met a singularity of the coordinates
   kGuessFailed,          // the guess did not lead to knots that join
   kNotRefined,           // discrete extremals have no counterpart on finer grids
   kFlowFailed,           // the flow along discrete extremals cannot be integrated

@@ -42,7 +42,9 @@ std::optional<Path> finer(const BoundaryValueProblem& problem, const Path& coars
   constexpr int kMostRelaxed = 128;
   DiscreteNewtonOptions newton;
   newton.max_iterations = 40;
+  const bool walled = in_one_chart(problem.segment, coarse);
   Path path = halved(coarse);
+  if (walled && !in_one_chart(problem.segment, path)) return std::nullopt;
   if (tighten(problem, newton, path).converged) return path;
   if (path.intervals > kMostRelaxed) return std::nullopt;
   RelaxationOptions relaxation;

@@ -15,6 +15,7 @@ struct Transcription {
   double rho;
   double ceiling;  // c > V; used where the scene has a potential
   bool potential;
+  bool walled;  // the path is in one chart, and kept there
 
   [[nodiscard]] int residuals() const {
     return segment.dof + segment.transcribed + (potential ? 1 : 0);
@@ -32,10 +33,10 @@ class Interval {
         terms_(shared.segment.dof + shared.segment.transcribed + 1),
         derivative_(terms_.size() * 2 * shared.segment.dof) {}
 
-  // At the nodes q, 2n numbers; see chain_least_squares.h. Steps beyond the chart are refused.
+  // At the nodes q, 2n numbers; see chain_least_squares.h.
   bool evaluate(const double* lambda, const double* q, double* residuals, double* jacobian) {
     const int n = shared_.segment.dof;
-    if (!same_chart(shared_.segment, q, q + n)) return false;
+    if (shared_.walled && !same_chart(shared_.segment, q, q + n)) return false;
     for (int i = 0; i < n; ++i) {
       qm_[i] = 0.5 * (q[i] + q[n + i]);
       v_[i] = (q[n + i] - q[i]) / shared_.h;
@@ -137,8 +138,12 @@ Relaxation relax(const BoundaryValueProblem& problem,
   const double h = problem.time / path.intervals;
   PathTerms state = terms_of(segment, h, path);
   const double spread = 1 + std::abs(state.max_potential);
-  Transcription shared{
-      segment, h, options.penalty * state.mass, state.max_potential + spread, state.potential};
+  Transcription shared{segment,
+                       h,
+                       options.penalty * state.mass,
+                       state.max_potential + spread,
+                       state.potential,
+                       in_one_chart(segment, path)};
   path.lambda.resize(static_cast<std::size_t>(path.intervals) * segment.transcribed, 0.0);
   std::vector<double>& lambda = path.lambda;
 

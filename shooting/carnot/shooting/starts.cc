@@ -116,8 +116,7 @@ Start make_start(const BoundaryValueProblem& problem, std::uint64_t seed, int i,
   constexpr std::array kOuter{2, 2, 1};  // one update leaves paths loose: saddles are found too
   constexpr int kOuterStiff = 4;
   constexpr double kStiff = 100;
-  constexpr int kShrinks = 8;  // of a wiggle that leaves the chart
-  constexpr double kShrink = 0.7;
+  constexpr double kShrink = 0.7;  // of a wiggle that leaves the chart
   const int n = problem.segment.dof;
   const StartScales scales = start_scales(problem);
   const double ratio = scales.distance / scales.radian;
@@ -129,9 +128,11 @@ Start make_start(const BoundaryValueProblem& problem, std::uint64_t seed, int i,
 
   Start start;
   start.path = wiggled_line(problem, intervals, size, scales, a);
-  for (int k = 0; k < kShrinks && !in_one_chart(problem.segment, start.path); ++k) {
-    size *= kShrink;
-    start.path = wiggled_line(problem, intervals, size, scales, a);
+  if (in_one_chart(problem.segment, wiggled_line(problem, intervals, 0, scales, a))) {
+    while (!in_one_chart(problem.segment, start.path)) {
+      size *= kShrink;
+      start.path = wiggled_line(problem, intervals, size, scales, a);
+    }
   }
   // With rho = 10 (unit / violation)^2 collapsing to the straight line, which violates the
   // constraints, costs about half the action of a path of that unit. Less, and it collapses.
