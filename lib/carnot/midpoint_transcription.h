@@ -74,34 +74,37 @@ LagrangianSlopes<T, Scene::kDof, Scene::kMultipliers> lagrangian_slopes(
     const Vector<double, Scene::kMultipliers>& lambda) {
   constexpr int n = Scene::kDof;
   constexpr int k = Scene::kMultipliers;
-  if constexpr (HasGauge<Scene>) return system.scene().slopes(q, v, lambda);
-  LagrangianSlopes<T, n, k> out;
-  out.l_q.setConstant(constant<T>(0));
-  out.l_v.setConstant(constant<T>(0));
-  out.g.setConstant(constant<T>(0));
-  const auto x = seeded(q);
-  const auto add = [&](const Jet<T, n>& entry, double weight) {
-    for (int d = 0; d < n; ++d) out.l_q[d] += entry.v[d] * weight;
-  };
-  if constexpr (HasPotential<Scene>) add(system.potential(x), -1);
-  const Matrix<Jet<T, n>, n, n> mass = system.scene().mass(x);
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j) {
-      out.l_v[i] += mass(i, j).a * v[j];
-      if (j <= i) add(mass(i, j), (j < i ? 1 : 0.5) * v[i] * v[j]);
-    }
-  }
-  if constexpr (k > 0) {
-    const Matrix<Jet<T, n>, k, n> rows = system.scene().constraints(x);
-    for (int i = 0; i < k; ++i) {
+  if constexpr (HasGauge<Scene>) {
+    return system.scene().slopes(q, v, lambda);
+  } else {
+    LagrangianSlopes<T, n, k> out;
+    out.l_q.setConstant(constant<T>(0));
+    out.l_v.setConstant(constant<T>(0));
+    out.g.setConstant(constant<T>(0));
+    const auto x = seeded(q);
+    const auto add = [&](const Jet<T, n>& entry, double weight) {
+      for (int d = 0; d < n; ++d) out.l_q[d] += entry.v[d] * weight;
+    };
+    if constexpr (HasPotential<Scene>) add(system.potential(x), -1);
+    const Matrix<Jet<T, n>, n, n> mass = system.scene().mass(x);
+    for (int i = 0; i < n; ++i) {
       for (int j = 0; j < n; ++j) {
-        out.g[i] += rows(i, j).a * v[j];
-        out.l_v[j] += rows(i, j).a * -lambda[i];
-        add(rows(i, j), -lambda[i] * v[j]);
+        out.l_v[i] += mass(i, j).a * v[j];
+        if (j <= i) add(mass(i, j), (j < i ? 1 : 0.5) * v[i] * v[j]);
       }
     }
+    if constexpr (k > 0) {
+      const Matrix<Jet<T, n>, k, n> rows = system.scene().constraints(x);
+      for (int i = 0; i < k; ++i) {
+        for (int j = 0; j < n; ++j) {
+          out.g[i] += rows(i, j).a * v[j];
+          out.l_v[j] += rows(i, j).a * -lambda[i];
+          add(rows(i, j), -lambda[i] * v[j]);
+        }
+      }
+    }
+    return out;
   }
-  return out;
 }
 
 // Gradient and, unless null, Hessian of the discrete Lagrangian F_d(q0, q1, lambda) = h l(qm, v)
