@@ -36,6 +36,29 @@ TEST(ConjugateTimes, HeisenbergGroupInClosedForm) {
   }
 }
 
+// The same for many turns, some with a conjugate time just where the planes are balanced: none is
+// lost, and none is unknown.
+TEST(ConjugateTimes, NoneIsLostWhateverTheWinding) {
+  const BoundaryValueProblem problem = test::heisenberg_group({1, 0, 1});
+  for (double w = 6.4; w < 80; w *= 1.013) {
+    std::vector<double> expected;
+    for (int k = 1; 2 * kPi * k / w <= 1; ++k) {
+      expected.push_back(2 * kPi * k / w);
+      double root = (k + 0.5) * kPi;  // of tan x = x
+      for (int i = 0; i < 20; ++i) root = k * kPi + std::atan(root);
+      if (2 * root / w <= 1) expected.push_back(2 * root / w);
+    }
+    const std::vector<double> p0{1.3, -0.4, w};
+    const long steps = 48;
+    const ConjugateTimes result = conjugate_times(problem, knots_of(problem, p0, 1, steps), steps);
+    ASSERT_TRUE(result.known) << w;
+    ASSERT_EQ(result.times.size(), expected.size()) << w;
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      EXPECT_NEAR(result.times[i], expected[i], kTolerance) << w;
+    }
+  }
+}
+
 TEST(ConjugateTimes, NoneOnAShortArc) {
   const ConjugateTimes result = times_of(test::heisenberg_group({1, 0, 1}), {1, 0.5, 5}, 1);
   EXPECT_TRUE(result.known);

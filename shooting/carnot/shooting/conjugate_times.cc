@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -120,37 +121,54 @@ Frame vertical(const Knots& knots) {
   return frame;
 }
 
-// The graph somewhat before T/2, where symmetric extremals have nothing special, and the smallest
-// kernel of several.
-std::optional<Graph> graph_before_half(const BoundaryValueProblem& problem,
-                                       const Knots& knots,
-                                       long steps) {
-  constexpr double kFraction = 0.43;
+// A typical graph from `begin` T to `end` T: the middle one by regularity, of those with the
+// smallest kernel. Near a time where X or P is singular the balance would make a phase turn too
+// fast to be seen.
+std::optional<Graph> typical_graph(
+    double begin, double end, const BoundaryValueProblem& problem, const Knots& knots, long steps) {
   const int n = problem.segment.dof;
-  const int before_half = std::max(1, 3 * knots.segments / 8);
+  const int last = std::max(1, static_cast<int>(end * knots.segments));
+  const double piece = (knots.segments == 1 ? end : 1.0 / knots.segments) * problem.time;
+  const double first = begin * problem.time;
+  const long count = std::max(2L, std::lround(steps * piece / problem.time));
+  const double h = piece / static_cast<double>(count);
   MatrixXd plane = vertical(knots).plane;
-  std::optional<Graph> graph;
-  for (int i = 0; i < before_half; ++i) {
+  std::vector<Graph> graphs;
+  for (int i = 0; i < last; ++i) {
     std::vector<double> z(knots.at(i), knots.at(i) + 2 * n);
-    const double start = problem.time * i / knots.segments;
-    const double end =
-        knots.segments == 1 ? kFraction * problem.time : problem.time * (i + 1) / knots.segments;
-    const long count = std::max(2L, steps / (2 * before_half));
     for (long j = 0; j < count; ++j) {
-      const double h = (end - start) / static_cast<double>(count);
+      const double t = i * piece + static_cast<double>(j) * h;
       RowMajor m(2 * n, 2 * n);
-      const StepPlan plan = StepPlan::equal(start + static_cast<double>(j) * h, h, 1);
+      const StepPlan plan = StepPlan::equal(t, h, 1);
       if (!problem.segment.tangent_flow(plan, z.data(), m.data()).completed()) return std::nullopt;
       plane = orthonormal(m * plane);
-      const bool later_half = 2 * (i * count + j + 1) >= before_half * count;
-      if (!later_half) continue;
+      if (t + h < first) continue;
       Graph next = graph_of(plane);
-      if (!next.balance.allFinite()) continue;
-      // A conjugate time by chance shows a kernel only there.
-      if (!graph || next.kernel <= graph->kernel) graph = std::move(next);
+      if (next.balance.allFinite()) graphs.push_back(std::move(next));
     }
   }
-  return graph;
+  if (graphs.empty()) return std::nullopt;
+  // A conjugate time by chance shows a kernel only there.
+  std::sort(graphs.begin(), graphs.end(), [](const Graph& one, const Graph& other) {
+    return std::pair(one.kernel, one.regularity) < std::pair(other.kernel, other.regularity);
+  });
+  const auto typical = std::count_if(graphs.begin(), graphs.end(), [&](const Graph& graph) {
+    return graph.kernel == graphs.front().kernel;
+  });
+  return graphs[typical / 2];
+}
+
+// Before T/2, where symmetric extremals have nothing special; but a path may leave an abnormal one
+// later than that, such as exponentially.
+std::optional<Graph> balance_of(double fraction,
+                                const BoundaryValueProblem& problem,
+                                const Knots& knots,
+                                long steps) {
+  constexpr double kLate = 0.9;
+  auto graph = typical_graph(0.5 * fraction, fraction, problem, knots, steps);
+  if (!graph || graph->kernel == 0) return graph;
+  auto late = typical_graph(kLate, 1, problem, knots, steps);
+  return late && late->kernel < graph->kernel ? late : graph;
 }
 
 // Whether a kernel that shows itself along the path can be told from small numbers. On a path of
@@ -167,14 +185,15 @@ bool tells_kernels(const Knots& knots) {
   return extent >= kLeastExtent;
 }
 
-// One pass at a given number of steps.
-ConjugateTimes follow(const BoundaryValueProblem& problem,
+// One pass at a given number of steps, balanced by what is before `fraction` T.
+ConjugateTimes follow(double fraction,
+                      const BoundaryValueProblem& problem,
                       const Knots& knots,
                       long steps,
                       double doubt) {
   const int n = problem.segment.dof;
   ConjugateTimes result;
-  const std::optional<Graph> graph = graph_before_half(problem, knots, steps);
+  const std::optional<Graph> graph = balance_of(fraction, problem, knots, steps);
   if (!graph || (graph->kernel > 0 && !tells_kernels(knots))) return result;
   result.corank = graph->kernel;
   if (graph->kernel == n) return result;
@@ -219,12 +238,14 @@ ConjugateTimes conjugate_times(const BoundaryValueProblem& problem,
                                const Knots& knots,
                                long steps,
                                double doubt) {
-  // A phase that makes a whole turn within one step goes unseen: two passes must agree.
+  // A phase that makes a whole turn within one step goes unseen: two passes, of other steps and
+  // another balance, must agree.
   constexpr int kDoublings = 4;
-  ConjugateTimes coarse = follow(problem, knots, steps, doubt);
+  constexpr std::array kFractions{0.43, 0.31};
+  ConjugateTimes coarse = follow(kFractions[0], problem, knots, steps, doubt);
   for (int i = 0; i < kDoublings; ++i) {
     steps *= 2;
-    ConjugateTimes fine = follow(problem, knots, steps, doubt);
+    ConjugateTimes fine = follow(kFractions[(i + 1) % 2], problem, knots, steps, doubt);
     if (coarse.known && fine.known && coarse.times.size() == fine.times.size() &&
         coarse.corank == fine.corank) {
       return fine;

@@ -67,8 +67,9 @@ Graph graph_of(const MatrixXd& plane) {
       ++graph.kernel;
       value = largest;
     }
-    value = std::sqrt(value);
   }
+  graph.regularity = root.minCoeff() / largest;
+  root = root.cwiseSqrt();
   graph.balance = solver.eigenvectors() * root.asDiagonal() * solver.eigenvectors().transpose();
   return graph;
 }

@@ -24,6 +24,7 @@ Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns);
 // What X P^-1, a symmetric matrix, says of a plane.
 struct Graph {
   int kernel = 0;           // dimension of the kernel of X, up to round-off
+  double regularity = 0;    // least over largest of the other singular values
   Eigen::MatrixXd balance;  // S: in coordinates S^-1 q, S'p all angles of the plane are moderate
 };
 
