@@ -53,9 +53,9 @@ double correct(const BoundaryValueProblem& problem,
                long steps,
                double tolerance,
                std::vector<double>& p0,
-               Eigen::MatrixXd& tangent) {
+               Eigen::MatrixXd& tangent,
+               double rank) {
   constexpr int kMaxIterations = 6;
-  constexpr double kRankThreshold = 1e-13;
   const int n = problem.segment.dof;
   double best = std::numeric_limits<double>::infinity();
   std::vector<double> trial = p0;
@@ -73,7 +73,7 @@ double correct(const BoundaryValueProblem& problem,
     Eigen::VectorXd residual(n);
     for (int j = 0; j < n; ++j) residual[j] = z[j] - problem.to[j];
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> inverse;
-    inverse.setThreshold(kRankThreshold);
+    inverse.setThreshold(rank);
     inverse.compute(tangent.topRows(n));
     const Eigen::VectorXd step = inverse.solve(residual);
     for (int j = 0; j < n; ++j) trial[j] = p0[j] - step[j];
@@ -93,10 +93,18 @@ void reduce(const BoundaryValueProblem& problem,
   if (kernel.cols() == 0) return;
   const Eigen::Map<const Eigen::VectorXd> p(p0.data(), static_cast<Eigen::Index>(p0.size()));
   const Eigen::VectorXd least = p - kernel * (kernel.transpose() * p);
-  std::vector<double> trial(least.data(), least.data() + least.size());
-  Eigen::MatrixXd there = tangent;
+  // Without the kernel first: along it the end hardly moves, and Newton's method would go back.
   constexpr double kSlack = 100;
-  if (!(correct(problem, steps, tolerance, trial, there) <= kSlack * tolerance)) return;
+  std::vector<double> trial;
+  Eigen::MatrixXd there;
+  bool arrives = false;
+  for (const double rank : {kGenerous, kRankThreshold}) {
+    if (arrives) break;
+    trial.assign(least.data(), least.data() + least.size());
+    there = tangent;
+    arrives = correct(problem, steps, tolerance, trial, there, rank) <= kSlack * tolerance;
+  }
+  if (!arrives) return;
   const auto on_the_way = [&](const std::vector<double>& momentum) {
     std::vector<double> z = problem.from;
     z.insert(z.end(), momentum.begin(), momentum.end());

@@ -25,13 +25,18 @@ std::optional<Eigen::MatrixXd> end_point_tangent(const BoundaryValueProblem& pro
 // which makes dq(t)/dp0 look singular, does not matter.
 Eigen::MatrixXd kernel_of(const Eigen::MatrixXd& tangent, double tolerance = 1e-9);
 
+// Singular values of a Jacobian below this, relative, are round-off.
+inline constexpr double kRankThreshold = 1e-13;
+
 // Newton's method on q(T) = to, to the tolerance or as far as it goes; steps of least norm where
-// the Jacobian is singular. Returns the end point error that p0 reaches, and the tangent there.
+// the Jacobian is singular, to `rank`. Returns the end point error that p0 reaches, and the tangent
+// there.
 double correct(const BoundaryValueProblem& problem,
                long steps,
                double tolerance,
                std::vector<double>& p0,
-               Eigen::MatrixXd& tangent);
+               Eigen::MatrixXd& tangent,
+               double rank = kRankThreshold);
 
 // Where directions of p0 do not move the end point, the member of least norm, if it is the same
 // path: on an abnormal extremal any multiple of the abnormal covector may be added. Where two such
