@@ -22,6 +22,18 @@ double round_off(const Knots& knots, double growth) {
   return kRoundings * std::numeric_limits<double>::epsilon() * largest * std::max(1.0, growth);
 }
 
+// Whether the flow from p0 magnifies round-off so much that it cannot tell where the path ends.
+// Where it does not, gaps at the knots only hide that the path ends elsewhere.
+bool magnifies(const BoundaryValueProblem& problem,
+               const Knots& knots,
+               long steps,
+               double tolerance) {
+  constexpr double kShare = 1e-2;  // of the tolerance
+  std::vector<double> z;
+  const auto tangent = end_point_tangent(problem, knots.p0(), problem.time, steps, z);
+  return !tangent || !(round_off(knots, tangent->norm()) < kShare * tolerance);
+}
+
 // max-norm of flow(z_i) - z_{i+1} and, last, of q(T) - to. Infinite when a flow fails.
 double knot_defect(const BoundaryValueProblem& problem, const Knots& knots, long steps) {
   const int n = knots.dof;
@@ -116,6 +128,10 @@ std::optional<Extremal> verify(const BoundaryValueProblem& problem,
     extremal.knots = knots;
     geodesic.verification = Verification::kKnots;
     geodesic.knot_defect = knot_defect(problem, knots, tighter);
+    if (geodesic.knot_defect <= tolerance && !magnifies(problem, knots, steps, tolerance)) {
+      why = Reason::kNotVerified;
+      return std::nullopt;
+    }
     if (!(geodesic.knot_defect <= tolerance)) {
       why = std::isinf(geodesic.knot_defect)                ? Reason::kFlowFailed
             : tolerance < round_off(extremal.knots, growth) ? Reason::kBeyondDouble
