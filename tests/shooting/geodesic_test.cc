@@ -101,6 +101,57 @@ TEST(Geodesic, StayingIsAnAnswer) {
   EXPECT_EQ(report.geodesics[0].trajectory.q.back(), (std::vector<double>{1, 2, 3, 4}));
 }
 
+// The line x2 = t of the Engel group: of its covectors, (0, 1, 0, c), the least.
+TEST(Geodesic, AbnormalLinesOfTheEngelGroup) {
+  for (const double y : {1.0, -1.0, 2.0, 3.0}) {
+    const GeodesicReport report = find(test::engel({0, y, 0, y * y * y / 6}));
+    ASSERT_FALSE(report.geodesics.empty()) << y;
+    const Geodesic& line = report.geodesics[0];
+    EXPECT_NEAR(line.action, 0.5 * y * y, 1e-13 * y * y);
+    EXPECT_EQ(line.abnormal, true) << y;
+    EXPECT_EQ(line.label, Label::kLocallyMinimal) << y;
+    EXPECT_NEAR(line.p0[3], 0, 1e-8) << y;
+  }
+}
+
+// Leaves the abnormal line y = 0 exponentially, and late: as near to it as round-off for half of
+// the time.
+TEST(Geodesic, LeavingAnAbnormalLineIsNotAbnormal) {
+  for (const double y : {0.05, 0.1}) {
+    const GeodesicReport report = find(test::martinet({1, y, 0}));
+    ASSERT_FALSE(report.geodesics.empty()) << y;
+    EXPECT_EQ(report.geodesics[0].abnormal, false) << y;
+  }
+}
+
+// A target beside the line (x, 0, 0) by z is reached by a path that ends there, not by one whose
+// gaps at many knots add up to z: to leading order its action is 1/2 + pi^2 z.
+TEST(Geodesic, GapsAtKnotsDoNotMakeUpForTheTarget) {
+  for (const double z : {1e-8, 1e-9}) {
+    const GeodesicReport report = find(test::martinet({1, 0, z}));
+    ASSERT_FALSE(report.geodesics.empty()) << z;
+    EXPECT_EQ(report.geodesics[0].verification, Verification::kSingle);
+    EXPECT_NEAR(report.geodesics[0].action - 0.5, kPi * kPi * z, 1e-6 * z);
+  }
+}
+
+TEST(Geodesic, SteeringABicycleInPlace) {
+  for (const double delta : {1.0, 1.5}) {
+    const GeodesicReport report = find(test::bicycle({0, 0, 0, delta}));
+    ASSERT_FALSE(report.geodesics.empty()) << delta;
+    EXPECT_NEAR(report.geodesics[0].action, 0.5 * delta * delta, 1e-12);
+  }
+}
+
+// By left translation the target 1e-3 above any point is as far as above the origin: 2 pi z.
+TEST(Geodesic, NearTargetsAreFoundAwayFromTheOrigin) {
+  BoundaryValueProblem problem = test::heisenberg_group({1, 1, 1.001});
+  problem.from = {1, 1, 1};
+  const GeodesicReport report = find(problem);
+  ASSERT_FALSE(report.geodesics.empty());
+  EXPECT_NEAR(report.geodesics[0].action, 2 * kPi * 1e-3, 1e-10);
+}
+
 TEST(Geodesic, SteeringInPlaceIsAbnormalAndSolved) {
   const GeodesicReport report = find(test::vehicle({0, 0, 0, 0}, {0, 0, 0, kPi / 2}));
   ASSERT_EQ(report.status, GeodesicStatus::kConverged) << report.message;

@@ -90,6 +90,10 @@ BoundaryValueProblem martinet(std::vector<double> to) {
   return {segment("martinet"), {0, 0, 0}, std::move(to)};
 }
 
+BoundaryValueProblem engel(std::vector<double> to) {
+  return {segment("engel"), {0, 0, 0, 0}, std::move(to)};
+}
+
 BoundaryValueProblem unicycle(std::vector<double> from, std::vector<double> to) {
   return {segment("unicycle"), std::move(from), std::move(to)};
 }

@@ -19,6 +19,7 @@ BoundaryValueProblem stiff_vehicle(std::vector<double> to);
 BoundaryValueProblem vehicle_cosine(std::vector<double> from, std::vector<double> to, double time);
 BoundaryValueProblem heisenberg_group(std::vector<double> to, double time = 1);  // from the origin
 BoundaryValueProblem martinet(std::vector<double> to);                           // the same
+BoundaryValueProblem engel(std::vector<double> to);                              // the same
 BoundaryValueProblem unicycle(std::vector<double> from, std::vector<double> to);
 BoundaryValueProblem bicycle(std::vector<double> to);  // from the origin; singular at delta = pi/2
 BoundaryValueProblem satellite(std::vector<double> to);  // the same; at theta = pi/2

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "carnot/shooting/discrete_newton.h"
+#include "carnot/shooting/relaxation.h"
 #include "carnot/shooting/starts.h"
 
 namespace carnot {
@@ -21,6 +23,26 @@ double extent_beside(const BoundaryValueProblem& problem, const Path& path, int 
     extent = std::max(extent, std::abs(beside(problem, path, i, j)));
   }
   return extent;
+}
+
+// A discrete extremal near `path`: by Newton's method or, where the path is too far from the
+// constraints for it, by relaxing first. Away from the origin coordinates that brackets move shrink
+// at several rates at once.
+bool settle(const BoundaryValueProblem& problem, Path& path) {
+  DiscreteNewtonOptions newton;
+  newton.max_iterations = 30;
+  Path trial = path;
+  bool settled = tighten(problem, newton, trial).converged;
+  if (!settled) {
+    RelaxationOptions relaxation;
+    relaxation.outer_iterations = 4;
+    relaxation.penalty = 100;
+    trial = path;
+    relax(problem, relaxation, trial);
+    settled = tighten(problem, newton, trial).converged;
+  }
+  if (settled) path = std::move(trial);
+  return settled;
 }
 
 }  // namespace
@@ -44,31 +66,36 @@ BoundaryValueProblem stretched(const BoundaryValueProblem& problem, double facto
 }
 
 bool shrink(const BoundaryValueProblem& problem, double factor, Path& path) {
-  constexpr double kShrinks = 0.7;  // per halving of the target, before it is known
+  constexpr double kShrinks = 0.5;  // exponent of a wiggle in the distance, before it is known
+  constexpr double kLongest = 0.5;  // step of the target, as a factor,
+  constexpr double kShortest = 0.9;
   const int n = path.dof;
-  std::vector<double> ratio(n, kShrinks);
-  while (factor > 1) {
-    factor /= 2;
-    const BoundaryValueProblem nearer = stretched(problem, factor);
+  std::vector<double> exponent(n, kShrinks);
+  for (double step = kLongest; factor > 1;) {
+    const double next = std::max(1.0, factor * step);
+    const BoundaryValueProblem nearer = next > 1 ? stretched(problem, next) : problem;
     Path trial = path;
     for (int j = 0; j < n; ++j) {
-      const double end = factor > 1 ? nearer.to[j] : problem.to[j];
+      const double ratio = std::pow(next / factor, exponent[j]);
       for (int i = 1; i <= path.intervals; ++i) {
-        const double line = problem.from[j] + i * (end - problem.from[j]) / path.intervals;
-        trial.configuration(i)[j] = line + ratio[j] * beside(problem, path, i, j);
+        const double line = problem.from[j] + i * (nearer.to[j] - problem.from[j]) / path.intervals;
+        trial.configuration(i)[j] = line + ratio * beside(problem, path, i, j);
       }
-      trial.configuration(path.intervals)[j] = end;
+      trial.configuration(path.intervals)[j] = nearer.to[j];
     }
-    DiscreteNewtonOptions newton;
-    newton.max_iterations = 30;
-    if (!tighten(nearer, newton, trial).converged) return false;
+    if (!settle(nearer, trial)) {
+      if (step > kShortest) return false;
+      step = std::sqrt(step);
+      continue;
+    }
     for (int j = 0; j < n; ++j) {
-      const double before = extent_beside(problem, path, j);
-      if (before > 0) {
-        ratio[j] = std::clamp(extent_beside(problem, trial, j) / before, 0.2, 1.0);
-      }
+      const double ratio = extent_beside(problem, trial, j) / extent_beside(problem, path, j);
+      if (!(ratio > 0)) continue;  // or not a number, where there was none
+      exponent[j] = std::clamp(std::log(ratio) / std::log(next / factor), 0.0, 2.3);
     }
     path = std::move(trial);
+    factor = next;
+    step = std::max(kLongest, step * step);
   }
   return true;
 }

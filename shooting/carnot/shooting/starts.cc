@@ -116,6 +116,7 @@ Start make_start(const BoundaryValueProblem& problem, std::uint64_t seed, int i,
   constexpr std::array kOuter{2, 2, 1};  // one update leaves paths loose: saddles are found too
   constexpr int kOuterStiff = 4;
   constexpr double kStiff = 100;
+  constexpr double kRoundOff = 1e-12;  // of constraints
   constexpr double kShrink = 0.7;  // of a wiggle that leaves the chart
   const int n = problem.segment.dof;
   const StartScales scales = start_scales(problem);
@@ -136,7 +137,8 @@ Start make_start(const BoundaryValueProblem& problem, std::uint64_t seed, int i,
   }
   // With rho = 10 (unit / violation)^2 collapsing to the straight line, which violates the
   // constraints, costs about half the action of a path of that unit. Less, and it collapses.
-  const double collapse = scales.violation > 0 ? unit / scales.violation : 1;
+  const bool violates = scales.violation > kRoundOff * scales.distance;
+  const double collapse = violates ? unit / scales.violation : 1;
   const double penalty = 10 * std::max(1.0, collapse * collapse) * kPenalties[i / 9 % 3];
   start.relaxation.caution = i % 2 == 0 ? 1e-4 : 1e-2;
   start.relaxation.penalty = std::min(penalty, kMaxPenalty);
