@@ -1,6 +1,7 @@
 #include "interrupt.h"
 
 #include <atomic>
+#include <csignal>
 #include <ctime>
 
 namespace carnot::apps {
@@ -41,15 +42,5 @@ void watch_for_interrupts() {
 }
 
 bool interrupted() { return first_time != 0; }
-
-InterruptsBlocked::InterruptsBlocked() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
-  pthread_sigmask(SIG_BLOCK, &signals, &before_);
-}
-
-InterruptsBlocked::~InterruptsBlocked() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
 
 }  // namespace carnot::apps

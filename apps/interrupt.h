@@ -2,26 +2,13 @@
 //
 // Later means half a second: timeout(1) sends its signal to the process and at once to its group.
 // Work polls interrupted() in its progress callback and returns; main then exits with 130. While a
-// file is being written the signals wait, so that no half of it stays behind.
+// file is being written the signals wait (plots/interrupts_blocked.h), so that no half of it stays
+// behind.
 #pragma once
-
-#include <csignal>
 
 namespace carnot::apps {
 
 void watch_for_interrupts();
 [[nodiscard]] bool interrupted();
-
-// Holds the signals back as long as it lives.
-class InterruptsBlocked {
- public:
-  InterruptsBlocked();
-  ~InterruptsBlocked();
-  InterruptsBlocked(const InterruptsBlocked&) = delete;
-  InterruptsBlocked& operator=(const InterruptsBlocked&) = delete;
-
- private:
-  sigset_t before_;
-};
 
 }  // namespace carnot::apps

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "interrupt.h"
+#include "carnot/plots/interrupts_blocked.h"
 #include "numbers.h"
 
 namespace carnot::apps {
@@ -55,7 +55,7 @@ void check_output_file(std::string_view option,
 }
 
 void write_file(const std::string& path, std::string_view text) {
-  const InterruptsBlocked blocked;
+  const plots::InterruptsBlocked blocked;
   const fs::path target(path);
   const fs::path temporary =
       directory_of(target) / fmt::format(".{}.{}.part", target.filename().string(), getpid());

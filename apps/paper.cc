@@ -10,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "carnot/plots/interrupts_blocked.h"
 #include "delivery.h"
 #include "interrupt.h"
 #include "numbers.h"
@@ -87,7 +88,7 @@ class Gallery {
   }
 
   void finish() {
-    const InterruptsBlocked blocked;
+    const plots::InterruptsBlocked blocked;
     for (const auto& entry : fs::directory_iterator(workshop_)) {
       std::error_code error;
       fs::rename(entry.path(), target_ / entry.path().filename(), error);

@@ -5,12 +5,16 @@
 
 #include <cctype>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
+
+#include "carnot/plots/interrupts_blocked.h"
 
 namespace carnot::plots {
 namespace {
@@ -83,6 +87,29 @@ class Workshop {
   fs::path path_;
 };
 
+// Processes that are started while it lives ignore interrupts: shells unblock signals when they
+// start, but leave those alone that are ignored. For this one they are blocked meanwhile.
+class ChildrenIgnoreInterrupts {
+ public:
+  ChildrenIgnoreInterrupts() {
+    struct sigaction ignore {};
+    ignore.sa_handler = SIG_IGN;
+    sigaction(SIGINT, &ignore, &interrupt_);
+    sigaction(SIGTERM, &ignore, &terminate_);
+  }
+  ~ChildrenIgnoreInterrupts() {
+    sigaction(SIGINT, &interrupt_, nullptr);
+    sigaction(SIGTERM, &terminate_, nullptr);
+  }
+  ChildrenIgnoreInterrupts(const ChildrenIgnoreInterrupts&) = delete;
+  ChildrenIgnoreInterrupts& operator=(const ChildrenIgnoreInterrupts&) = delete;
+
+ private:
+  InterruptsBlocked blocked_;  // first made, last destroyed
+  struct sigaction interrupt_ {};
+  struct sigaction terminate_ {};
+};
+
 std::string shell_quoted(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -91,10 +118,11 @@ std::string shell_quoted(const std::string& text) {
 
 // The shell notes gnuplot's status and swallows what gnuplot did not read: otherwise a gnuplot that
 // is missing or stops early would kill this program by SIGPIPE. It only uses built-in commands.
-// Ctrl-C reaches every process of the terminal: the shell stays, this program answers.
+// Ctrl-C reaches every process of the terminal: with interrupts blocked from their start on the
+// shell and gnuplot stay, and this program answers.
 std::string command_line(const fs::path& directory) {
   return "cd " + shell_quoted(directory.string()) +
-         " && { trap '' INT TERM; LC_ALL=C.UTF-8 gnuplot -d; echo $? > status; "
+         " && { LC_ALL=C.UTF-8 gnuplot -d; echo $? > status; "
          "while read -r line; do :; done; } > log 2>&1; :";
 }
 
@@ -138,7 +166,9 @@ std::string write_picture(const std::string& file, const Picture& picture) {
   const Workshop workshop(fs::absolute(directory_of(file)));
   const std::string name = "figure" + ending(file);
   {
+    auto starting = std::make_optional<ChildrenIgnoreInterrupts>();
     gnuplotio::Gnuplot gnuplot(command_line(workshop.path()));
+    starting.reset();
     gnuplot << "set encoding utf8\nset minussign\n" << terminal(ending(file), picture);
     gnuplot << "set output '" << name << "'\n" << picture.commands << "\nset output\n";
   }  // waits for gnuplot
