@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "carnot/plots/script.h"
+#include "holonomic_check.h"
 #include "numbers.h"
 #include "scene_choice.h"
 #include "text_table.h"
@@ -47,6 +48,7 @@ Along parse_along(const std::string& text, const Run& run, const Ends& ends) {
     along.kind = along.name == "to" ? Along::Kind::kTarget : Along::Kind::kStart;
     along.start = along.name == "to" ? ends.to : ends.from;
     along.end = parse_vector(option, value, coordinate_names(*run.entry));
+    check_end(option, value, run.segment, along.end);
   } else if (along.name == "time") {
     along.kind = Along::Kind::kTime;
     along.start = {ends.time};

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "continue_result.h"
+#include "holonomic_check.h"
 #include "numbers.h"
 #include "progress_bar.h"
 #include "scene_choice.h"
@@ -63,6 +64,8 @@ ContinueRequest check(const Options& options) {
   }
   request.ends.from = parse_vector("--from", options.from, names);
   request.ends.to = parse_vector("--to", options.to, names);
+  check_end("--from", options.from, request.run.segment, request.ends.from);
+  check_end("--to", options.to, request.run.segment, request.ends.to);
   request.ends.time = parse_positive("--time", options.time);
   request.along = parse_along(options.along, request.run, request.ends);
   if (!options.guess.empty() && !options.rank.empty()) {

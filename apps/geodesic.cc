@@ -92,17 +92,6 @@ GeodesicOptions check_search(const Options& options, const Run& run) {
   return search;
 }
 
-// Holonomic constraints hold at both ends.
-void check_ends(const Options& options, const GeodesicRequest& request) {
-  const Segment& segment = request.run.segment;
-  if (segment.holonomic == 0) return;
-  std::vector<double> z(2 * segment.dof, 0.0);
-  std::copy(request.from.begin(), request.from.end(), z.begin());
-  check_holonomic("--from", options.from, segment.holonomic_residuals(0, z.data()).position);
-  std::copy(request.to.begin(), request.to.end(), z.begin());
-  check_holonomic("--to", options.to, segment.holonomic_residuals(0, z.data()).position);
-}
-
 GeodesicRequest check(const Options& options) {
   GeodesicRequest request;
   request.run = check(options.run);
@@ -111,7 +100,8 @@ GeodesicRequest check(const Options& options) {
   if (options.to.empty()) refuse_missing("--to", vector_accepted(names));
   request.from = parse_vector("--from", options.from, names);
   request.to = parse_vector("--to", options.to, names);
-  check_ends(options, request);
+  check_end("--from", options.from, request.run.segment, request.from);
+  check_end("--to", options.to, request.run.segment, request.to);
   request.time = parse_positive("--time", options.time);
   request.options = check_search(options, request.run);
   return request;

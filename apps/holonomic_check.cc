@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "carnot/shooting/boundary_value_problem.h"
 #include "numbers.h"
 
 namespace carnot::apps {
@@ -13,6 +14,19 @@ void check_holonomic(std::string_view option, std::string_view text, double resi
          text,
          fmt::format("off the holonomic constraints, max |h(q)| = {:.3g}", residual),
          fmt::format("a configuration with max |h(q)| <= {:g}", kTolerance));
+}
+
+void check_end(std::string_view option,
+               std::string_view text,
+               const Segment& segment,
+               const std::vector<double>& q) {
+  if (segment.holonomic > 0) {
+    std::vector<double> z = q;
+    z.resize(2 * q.size(), 0.0);
+    check_holonomic(option, text, segment.holonomic_residuals(0, z.data()).position);
+  }
+  const RateStatus status = end_status(segment, q);
+  if (status != RateStatus::kOk) refuse(option, text, describe(status), "regular configurations");
 }
 
 }  // namespace carnot::apps

@@ -209,6 +209,16 @@ INSTANTIATE_TEST_SUITE_P(Cli,
                          ::testing::Values(kProgram, kFlowData, kFlowTime, kRun, kGeodesic),
                          name_of);
 
+TEST(BadInput, EndsMustBeRegular) {
+  const std::string singular = "the coordinates are singular here";
+  expect_refused({"geodesic", "bicycle", "--from", "0,0,0,0", "--to", "0,0,0,pi/2"},
+                 HasSubstr("--to '0,0,0,pi/2': " + singular));
+  expect_refused({"geodesic", "satellite", "--from", "0,pi/2,0", "--to", "0,0,0"},
+                 HasSubstr("--from '0,pi/2,0': " + singular));
+  const Words line{"continue", "satellite", "--from", "0,0,0", "--to", "0,1,0", "--along"};
+  expect_refused(with(line, {"to=0,pi/2,0"}), HasSubstr("--along to '0,pi/2,0': " + singular));
+}
+
 TEST(BadInput, WithLineBreaksStillMakesOneLine) {
   expect_refused({"flow", "vehicle", "--from", "1\n2\x1b"}, HasSubstr("'1\\n2\\x1b'"));
 }

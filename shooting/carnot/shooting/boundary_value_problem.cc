@@ -17,19 +17,24 @@ void check_end(const char* name, const std::vector<double>& q, const Segment& se
                                   ", not a finite number");
     }
   }
-  const std::vector<double> zero(segment.dof, 0.0);
-  std::vector<double> q_dot(segment.dof);
-  std::vector<double> lambda(segment.multipliers + 1);
-  const PointValues at = segment.evaluate(0, q.data(), zero.data(), q_dot.data(), lambda.data());
-  // Some systems are of index 1 away from rest only.
-  const bool at_rest =
-      at.status == RateStatus::kNotIndexOne || at.status == RateStatus::kNoSolution;
-  if (at.status != RateStatus::kOk && !at_rest) {
-    throw std::invalid_argument(std::string(name) + ": " + std::string(describe(at.status)));
+  const RateStatus status = end_status(segment, q);
+  if (status != RateStatus::kOk) {
+    throw std::invalid_argument(std::string(name) + ": " + std::string(describe(status)));
   }
 }
 
 }  // namespace
+
+RateStatus end_status(const Segment& segment, const std::vector<double>& q) {
+  const std::vector<double> zero(segment.dof, 0.0);
+  std::vector<double> q_dot(segment.dof);
+  std::vector<double> lambda(segment.multipliers + 1);
+  const RateStatus status =
+      segment.evaluate(0, q.data(), zero.data(), q_dot.data(), lambda.data()).status;
+  // Some systems are of index 1 away from rest only.
+  const bool at_rest = status == RateStatus::kNotIndexOne || status == RateStatus::kNoSolution;
+  return at_rest ? RateStatus::kOk : status;
+}
 
 void BoundaryValueProblem::validate() const {
   check_end("from", from, segment);

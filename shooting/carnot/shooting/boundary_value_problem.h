@@ -9,6 +9,9 @@
 
 namespace carnot {
 
+// kOk, or why no geodesic can end at q (length n): dependent constraints, singular coordinates.
+RateStatus end_status(const Segment& segment, const std::vector<double>& q);
+
 struct BoundaryValueProblem {
   Segment segment;           // scene and method
   std::vector<double> from;  // q(0), length n
