@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace carnot {
 namespace {
 
@@ -23,6 +25,7 @@ TEST(Ranking, ByActionThenByMomentum) {
 TEST(MissedEstimate, IsThatOfChao) {
   EXPECT_EQ(missed_estimate({}), 0);
   EXPECT_EQ(missed_estimate({7, 3, 5}), 0);
+  EXPECT_FALSE(std::signbit(missed_estimate({7, 3, 5})));
   EXPECT_EQ(missed_estimate({1, 1, 1, 1, 2, 2, 9}), 4);
   EXPECT_EQ(missed_estimate({1, 1, 1}), 3);
 }

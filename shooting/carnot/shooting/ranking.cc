@@ -24,7 +24,7 @@ void rank(std::vector<Extremal>& list) {
 double missed_estimate(const std::vector<int>& hits) {
   const auto once = static_cast<double>(std::count(hits.begin(), hits.end(), 1));
   const auto twice = static_cast<double>(std::count(hits.begin(), hits.end(), 2));
-  return twice > 0 ? once * once / (2 * twice) : once * (once - 1) / 2;
+  return twice > 0 ? once * once / (2 * twice) : once * std::max(0.0, once - 1) / 2;
 }
 
 }  // namespace carnot
