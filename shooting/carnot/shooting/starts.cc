@@ -117,7 +117,7 @@ Start make_start(const BoundaryValueProblem& problem, std::uint64_t seed, int i,
   constexpr int kOuterStiff = 4;
   constexpr double kStiff = 100;
   constexpr double kRoundOff = 1e-12;  // of constraints
-  constexpr double kShrink = 0.7;  // of a wiggle that leaves the chart
+  constexpr double kShrink = 0.7;      // of a wiggle that leaves the chart
   const int n = problem.segment.dof;
   const StartScales scales = start_scales(problem);
   const double ratio = scales.distance / scales.radian;
