@@ -152,6 +152,15 @@ TEST(Geodesic, NearTargetsAreFoundAwayFromTheOrigin) {
   EXPECT_NEAR(report.geodesics[0].action, 2 * kPi * 1e-3, 1e-10);
 }
 
+// On the singular line of the Grushin plane the action is pi |dy|, wherever y is.
+TEST(Geodesic, OnTheSingularLineOfTheGrushinPlane) {
+  for (const double away : {1e-3, 1e-5}) {
+    const GeodesicReport report = find(test::grushin({0, 1}, {0, 1 + away}));
+    ASSERT_FALSE(report.geodesics.empty()) << away;
+    EXPECT_NEAR(report.geodesics[0].action, kPi * away, 1e-9 * away);
+  }
+}
+
 TEST(Geodesic, SteeringInPlaceIsAbnormalAndSolved) {
   const GeodesicReport report = find(test::vehicle({0, 0, 0, 0}, {0, 0, 0, kPi / 2}));
   ASSERT_EQ(report.status, GeodesicStatus::kConverged) << report.message;

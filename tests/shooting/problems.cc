@@ -98,6 +98,10 @@ BoundaryValueProblem unicycle(std::vector<double> from, std::vector<double> to) 
   return {segment("unicycle"), std::move(from), std::move(to)};
 }
 
+BoundaryValueProblem grushin(std::vector<double> from, std::vector<double> to) {
+  return {segment("grushin"), std::move(from), std::move(to)};
+}
+
 BoundaryValueProblem bicycle(std::vector<double> to) {
   return {segment("bicycle"), {0, 0, 0, 0}, std::move(to)};
 }

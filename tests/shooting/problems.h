@@ -21,6 +21,7 @@ BoundaryValueProblem heisenberg_group(std::vector<double> to, double time = 1); 
 BoundaryValueProblem martinet(std::vector<double> to);                           // the same
 BoundaryValueProblem engel(std::vector<double> to);                              // the same
 BoundaryValueProblem unicycle(std::vector<double> from, std::vector<double> to);
+BoundaryValueProblem grushin(std::vector<double> from, std::vector<double> to);
 BoundaryValueProblem bicycle(std::vector<double> to);  // from the origin; singular at delta = pi/2
 BoundaryValueProblem satellite(std::vector<double> to);  // the same; at theta = pi/2
 

@@ -93,6 +93,8 @@ DiscreteNewton tighten(const BoundaryValueProblem& problem,
                        const DiscreteNewtonOptions& options,
                        Path& path) {
   constexpr double kShortestStep = 1.0 / 64;
+  // Where no step gains: round-off of coordinates far from zero, magnified near singular frames.
+  constexpr double kRoundedOff = 1e-6;
   const double h = problem.time / path.intervals;
   Equations equations(problem.segment, h, path.intervals);
   BandedLu matrix(equations.size(), equations.band(), equations.band());
@@ -125,7 +127,10 @@ DiscreteNewton tighten(const BoundaryValueProblem& problem,
       matrix.substitute(simplified);
       if (norm(simplified) < (1 - 0.25 * step) * length) break;
     }
-    if (step < kShortestStep) break;
+    if (step < kShortestStep) {
+      result.converged = !result.left_chart && result.residual <= kRoundedOff * scale;
+      break;
+    }
     std::swap(path.q, trial.q);
     std::swap(path.lambda, trial.lambda);
     equations.evaluate(path, residual, &matrix);

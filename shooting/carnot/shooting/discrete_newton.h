@@ -21,7 +21,7 @@ struct DiscreteNewtonOptions {
 };
 
 struct DiscreteNewton {
-  bool converged = false;
+  bool converged = false;   // to the tolerance, or as far as round-off lets it
   bool left_chart = false;  // the last steps were refused since they leave the chart
   double residual = 0;
   int iterations = 0;
