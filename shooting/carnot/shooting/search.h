@@ -67,9 +67,8 @@ class Search {
   [[nodiscard]] bool lacks() const;
   // The search for one geodesic ends when the least action has been hit often enough, and the more
   // often the more rivals it has; not while the best extremal is past a conjugate time, since then
-  // a nearby path is better. It ends somewhat sooner where most starts converge, most of
-  // them to one extremal, and nothing comes near its action. A search for more goes on to the
-  // limit.
+  // a nearby path is better. It ends somewhat sooner where most starts converge, most of them to one
+  // extremal, and nothing comes near its action. A search for more goes on to the limit.
   [[nodiscard]] bool settled();
   void relax_round(int count);
   // The same from momenta, where there is no transcription.
