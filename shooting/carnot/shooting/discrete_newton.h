@@ -1,13 +1,7 @@
 // Newton's method on the midpoint transcription: from a nearly tight path to a discrete extremal.
 //
-// A path with multipliers is a discrete extremal when, with F_d of midpoint_transcription.h,
-//
-//   D2 F_d(q_{i-1}, q_i, lambda_{i-1}) + D1 F_d(q_i, q_{i+1}, lambda_i) = 0,   D3 F_d = 0,
-//
-// which is the midpoint rule with momenta that match at every node. The Jacobian holds the exact
-// second derivatives; ordered lambda_0, q_1, lambda_1, q_2, ..., it is banded. Steps are halved
-// while the residual does not fall or the path leaves the one chart that it is in. Minimisers and
-// saddles attract alike.
+// Solves the equations of discrete_equations.h. Steps are halved while the residual does not fall
+// or the path leaves the one chart that it is in. Minimisers and saddles attract alike.
 #pragma once
 
 #include "carnot/shooting/boundary_value_problem.h"
