@@ -6,28 +6,26 @@
 
 #include "carnot/shooting/discrete_newton.h"
 #include "carnot/shooting/relaxation.h"
-#include "carnot/shooting/starts.h"
 
 namespace carnot {
 namespace {
 
-// Where coordinate j is beside the straight line to the end of the path, at node i.
-double beside(const BoundaryValueProblem& problem, const Path& path, int i, int j) {
-  const double end = path.configuration(path.intervals)[j];
-  return path.configuration(i)[j] - problem.from[j] - i * (end - problem.from[j]) / path.intervals;
-}
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
-double extent_beside(const BoundaryValueProblem& problem, const Path& path, int j) {
-  double extent = 0;
+// Column i: node i in the coordinates of the dilation, beside the straight line to the end.
+MatrixXd beside_line(const Dilation& dilation, const Path& path) {
+  const VectorXd end = dilation.coordinates(path.configuration(path.intervals));
+  MatrixXd y(path.dof, path.intervals + 1);
   for (int i = 0; i <= path.intervals; ++i) {
-    extent = std::max(extent, std::abs(beside(problem, path, i, j)));
+    const double share = static_cast<double>(i) / path.intervals;
+    y.col(i) = dilation.coordinates(path.configuration(i)) - share * end;
   }
-  return extent;
+  return y;
 }
 
 // A discrete extremal near `path`: by Newton's method or, where the path is too far from the
-// constraints for it, by relaxing first. Away from the origin coordinates that brackets move shrink
-// at several rates at once.
+// constraints for it, by relaxing first.
 bool settle(const BoundaryValueProblem& problem, Path& path) {
   DiscreteNewtonOptions newton;
   newton.max_iterations = 30;
@@ -47,51 +45,55 @@ bool settle(const BoundaryValueProblem& problem, Path& path) {
 
 }  // namespace
 
-double easy_factor(const BoundaryValueProblem& problem) {
-  constexpr double kEasy = 0.02;  // D / S of starts.h
-  const StartScales scales = start_scales(problem);
-  const bool against = scales.violation > 0.1 * scales.distance;
-  if (!against || !(scales.distance > 0)) return 1;
-  double factor = 1;
-  while (factor * scales.distance < kEasy * scales.radian) factor *= 2;
-  return factor;
+std::optional<NearTarget> NearTarget::of(const BoundaryValueProblem& problem) {
+  constexpr double kEasy = 0.15;  // gauge
+  constexpr double kWorthIt = 1.5;
+  if (!problem.segment.has_transcription()) return std::nullopt;
+  auto dilation = Dilation::at_start(problem);
+  if (!dilation) return std::nullopt;
+  const double gauge = dilation->gauge(dilation->coordinates(problem.to.data()));
+  const double factor = kEasy / gauge;
+  if (!(factor > kWorthIt) || !std::isfinite(factor)) return std::nullopt;
+  return NearTarget(problem, std::move(*dilation), factor);
 }
 
-BoundaryValueProblem stretched(const BoundaryValueProblem& problem, double factor) {
-  BoundaryValueProblem far = problem;
-  for (std::size_t j = 0; j < far.to.size(); ++j) {
-    far.to[j] = far.from[j] + factor * (problem.to[j] - problem.from[j]);
-  }
+BoundaryValueProblem NearTarget::dilated(double factor) const {
+  BoundaryValueProblem far = problem_;
+  dilation_.place(dilation_.scaled(dilation_.coordinates(problem_.to.data()), factor),
+                  far.to.data());
   return far;
 }
 
-bool shrink(const BoundaryValueProblem& problem, double factor, Path& path) {
-  constexpr double kShrinks = 0.5;  // exponent of a wiggle in the distance, before it is known
-  constexpr double kLongest = 0.5;  // step of the target, as a factor,
-  constexpr double kShortest = 0.9;
+bool NearTarget::shrink(Path& path) const {
+  constexpr double kLongest = 0.5;  // step of the dilation, as a factor,
+  constexpr double kShortest = 0.95;
   const int n = path.dof;
-  std::vector<double> exponent(n, kShrinks);
+  std::vector<double> exponent(dilation_.weights().begin(), dilation_.weights().end());
+  double factor = factor_;
   for (double step = kLongest; factor > 1;) {
     const double next = std::max(1.0, factor * step);
-    const BoundaryValueProblem nearer = next > 1 ? stretched(problem, next) : problem;
+    const BoundaryValueProblem nearer = next > 1 ? dilated(next) : problem_;
+    const VectorXd end = dilation_.coordinates(nearer.to.data());
+    const MatrixXd beside = beside_line(dilation_, path);
+    VectorXd ratio(n);
+    for (int j = 0; j < n; ++j) ratio[j] = std::pow(next / factor, exponent[j]);
     Path trial = path;
-    for (int j = 0; j < n; ++j) {
-      const double ratio = std::pow(next / factor, exponent[j]);
-      for (int i = 1; i <= path.intervals; ++i) {
-        const double line = problem.from[j] + i * (nearer.to[j] - problem.from[j]) / path.intervals;
-        trial.configuration(i)[j] = line + ratio * beside(problem, path, i, j);
-      }
-      trial.configuration(path.intervals)[j] = nearer.to[j];
+    for (int i = 1; i < path.intervals; ++i) {
+      const double share = static_cast<double>(i) / path.intervals;
+      dilation_.place(share * end + ratio.cwiseProduct(beside.col(i)), trial.configuration(i));
     }
+    std::copy(nearer.to.begin(), nearer.to.end(), trial.configuration(path.intervals));
     if (!settle(nearer, trial)) {
       if (step > kShortest) return false;
       step = std::sqrt(step);
       continue;
     }
+    const MatrixXd reached = beside_line(dilation_, trial);
     for (int j = 0; j < n; ++j) {
-      const double ratio = extent_beside(problem, trial, j) / extent_beside(problem, path, j);
-      if (!(ratio > 0)) continue;  // or not a number, where there was none
-      exponent[j] = std::clamp(std::log(ratio) / std::log(next / factor), 0.0, 2.3);
+      const double shrunk =
+          reached.row(j).cwiseAbs().maxCoeff() / beside.row(j).cwiseAbs().maxCoeff();
+      if (!(shrunk > 0)) continue;  // or not a number, where there was nothing
+      exponent[j] = std::clamp(std::log(shrunk) / std::log(next / factor), 0.0, 5.0);
     }
     path = std::move(trial);
     factor = next;

@@ -1,25 +1,40 @@
 // Discrete extremals to targets that are very near, by way of targets that are not.
 //
-// A displacement of size D against the constraints takes a path of size D^(1/r) with momenta of
-// size D^(1/r - 1) or so: the ratio of the scales leaves a penalty method no digits. But the
-// extremals to from + s (to - from) form a branch that shrinks with s, and Newton's method
-// (discrete_newton.h) follows it from an s that is easy down to 1. What a coordinate shrinks by
-// from one s to the next predicts the step after.
+// A target whose displacement takes brackets of order w and has size d^w is reached by a path of
+// size d with momenta up to d^(1 - w) or so: the ratio of the scales leaves a penalty method no
+// digits. Dilated (dilation.h) the target is easy, and its extremals look like those wanted;
+// Newton's method (discrete_newton.h) follows each while the dilation is taken back. By what power
+// of the dilation a coordinate of the path shrinks is read off the last step.
 #pragma once
 
+#include <optional>
+
 #include "carnot/shooting/boundary_value_problem.h"
+#include "carnot/shooting/dilation.h"
 #include "carnot/shooting/path.h"
 
 namespace carnot {
 
-// How many times further the target of an easy problem is, a power of 2; 1 where `problem` is easy.
-double easy_factor(const BoundaryValueProblem& problem);
+class NearTarget {
+ public:
+  // Nothing where the problem is easy as it is, or has no dilation.
+  static std::optional<NearTarget> of(const BoundaryValueProblem& problem);
 
-// The problem with the target `factor` times further away.
-BoundaryValueProblem stretched(const BoundaryValueProblem& problem, double factor);
+  // The easy problem.
+  [[nodiscard]] BoundaryValueProblem dilated() const { return dilated(factor_); }
+  // From a discrete extremal of the easy problem to one of the problem itself. False when it is
+  // lost on the way.
+  bool shrink(Path& path) const;
 
-// From a discrete extremal to the target `factor` times further away to one of `problem`. False
-// when the branch is lost.
-bool shrink(const BoundaryValueProblem& problem, double factor, Path& path);
+ private:
+  NearTarget(const BoundaryValueProblem& problem, Dilation dilation, double factor)
+      : problem_(problem), dilation_(std::move(dilation)), factor_(factor) {}
+
+  [[nodiscard]] BoundaryValueProblem dilated(double factor) const;
+
+  const BoundaryValueProblem& problem_;
+  Dilation dilation_;
+  double factor_;
+};
 
 }  // namespace carnot

@@ -8,7 +8,6 @@
 #include "carnot/shooting/classification.h"
 #include "carnot/shooting/discrete_newton.h"
 #include "carnot/shooting/momentum_starts.h"
-#include "carnot/shooting/near_target.h"
 #include "carnot/shooting/polish.h"
 #include "carnot/shooting/ranking.h"
 #include "carnot/shooting/starts.h"
@@ -47,7 +46,6 @@ double largest_momentum(const Path& path) {
 }  // namespace
 
 bool Search::run() {
-  if (problem_.segment.has_transcription()) easy_ = easy_factor(problem_);
   int limit = options_.all ? kMaxStartsAll : kMaxStarts;
   if (options_.starts > 0) limit = options_.starts;
   const bool by_paths = problem_.segment.has_transcription();
@@ -294,7 +292,7 @@ Search::Candidate Search::relax_start(int i) const {
   constexpr double kHeld = 0.02;
   constexpr int kAttempts = 3;
   constexpr double kStiffer = 8;
-  const BoundaryValueProblem easy = easy_ > 1 ? stretched(problem_, easy_) : problem_;
+  const BoundaryValueProblem easy = near_ ? near_->dilated() : problem_;
   const Start start = make_start(easy, options_.seed, i, intervals_);
   RelaxationOptions relaxation = start.relaxation;
   Candidate candidate;
@@ -309,7 +307,7 @@ Search::Candidate Search::relax_start(int i) const {
     candidate.residual = tightened.residual / largest_momentum(candidate.path);
     if (candidate.found || violation < kHeld || candidate.stiffness > 0) break;
   }
-  if (candidate.found && easy_ > 1) candidate.found = shrink(problem_, easy_, candidate.path);
+  if (candidate.found && near_) candidate.found = near_->shrink(candidate.path);
   return candidate;
 }
 

@@ -11,6 +11,7 @@
 
 #include "carnot/parallel.h"
 #include "carnot/shooting/knots.h"
+#include "carnot/shooting/near_target.h"
 #include "carnot/shooting/path.h"
 #include "carnot/shooting/reason.h"
 #include "carnot/shooting/symmetry.h"
@@ -25,7 +26,8 @@ class Search {
       : problem_(problem),
         options_(options),
         threads_(thread_count(options.threads)),
-        symmetries_(symmetries_of(problem)) {}
+        symmetries_(symmetries_of(problem)),
+        near_(NearTarget::of(problem)) {}
 
   // Runs rounds of starts until the list is good enough. False when interrupted.
   bool run();
@@ -67,8 +69,8 @@ class Search {
   [[nodiscard]] bool lacks() const;
   // The search for one geodesic ends when the least action has been hit often enough, and the more
   // often the more rivals it has; not while the best extremal is past a conjugate time, since then
-  // a nearby path is better. It ends somewhat sooner where most starts converge, most of them to one
-  // extremal, and nothing comes near its action. A search for more goes on to the limit.
+  // a nearby path is better. It ends somewhat sooner where most starts converge, most of them to
+  // one extremal, and nothing comes near its action. A search for more goes on to the limit.
   [[nodiscard]] bool settled();
   void relax_round(int count);
   // The same from momenta, where there is no transcription.
@@ -118,12 +120,12 @@ class Search {
   const GeodesicOptions& options_;
   int threads_;
   std::vector<ProblemSymmetry> symmetries_;
+  std::optional<NearTarget> near_;  // where paths are relaxed to a target further away
   std::vector<Extremal> extremals_;
   std::vector<int> hits_;
   std::vector<int> partner_of_;  // the extremal whose mirror image it is, or kNone
   int stiffness_ = 0;            // how often most starts of a round had to raise the penalty
   int intervals_ = 32;           // of the grid that paths are relaxed on
-  double easy_ = 1;              // relaxation aims at a target this many times further away
   bool descends_ = false;        // the best extremal so far is no minimum
   std::vector<Discrete> discrete_;
   Reason furthest_ = Reason::kNone;
