@@ -6,10 +6,12 @@
 #include <utility>
 
 #include "carnot/shooting/classification.h"
+#include "carnot/shooting/descent.h"
 #include "carnot/shooting/discrete_newton.h"
 #include "carnot/shooting/momentum_starts.h"
 #include "carnot/shooting/polish.h"
 #include "carnot/shooting/ranking.h"
+#include "carnot/shooting/refinement.h"
 #include "carnot/shooting/starts.h"
 #include "carnot/shooting/sweep.h"
 
@@ -64,7 +66,7 @@ bool Search::run() {
     const bool may_end = !wants_more() && 0 < starts_ && starts_ < kMinStarts;
     const int count = std::min(may_end ? kRound / 2 : kRound, left());
     if (by_paths && descends_ && descents < kMaxDescents) {
-      sweep_round(descents++);
+      if (!descend_round()) sweep_round(descents++);
     } else {
       by_paths ? relax_round(count) : momentum_round(count);
     }
@@ -163,6 +165,29 @@ void Search::relax_round(int count) {
   }
   if (2 * stiffer > found && stiffness_ < kMaxStiffness) ++stiffness_;
   if (artefacts) intervals_ = std::min(2 * intervals_, kMaxIntervals);
+}
+
+bool Search::descend_round() {
+  constexpr int kGrids = 3;
+  const auto saddle = std::find_if(discrete_.begin(), discrete_.end(), [&](const Discrete& known) {
+    return known.extremal == static_cast<int>(best()) && known.descents < kGrids;
+  });
+  if (saddle == discrete_.end()) return false;
+  Path path = saddle->path;
+  for (int i = 0; i < saddle->descents; ++i) {
+    path = halved(path);
+    if (!tighten(problem_, {}, path).converged) return false;
+  }
+  ++saddle->descents;
+  std::vector<Candidate> candidates;
+  for (Path& way : ways_down(problem_, path)) {
+    candidates.emplace_back();
+    candidates.back().found = true;
+    candidates.back().path = std::move(way);
+  }
+  const double before = extremals_[best()].geodesic.action;
+  absorb(candidates);
+  return extremals_[best()].geodesic.action < before - kSameAction * std::abs(before);
 }
 
 void Search::momentum_round(int count) {

@@ -75,6 +75,8 @@ class Search {
   void relax_round(int count);
   // The same from momenta, where there is no transcription.
   void momentum_round(int count);
+  // Goes down from the best extremal, which is no minimum. False where that gives nothing better.
+  bool descend_round();
   // Energies from that of the shortest extremal to twice that, or to the longest one.
   void sweep_round(int round);
   // What became of new discrete extremals.
@@ -114,6 +116,7 @@ class Search {
     double action = 0;
     int extremal = kPending;  // the one it became, kNone, kPending or kTooLong,
     int pending_hits = 1;     // and how often it was seen before it became one
+    int descents = 0;         // how often the ways down from it were taken, on finer grids each
   };
 
   const BoundaryValueProblem& problem_;
