@@ -122,12 +122,39 @@ TEST(ConjugateTimes, LeaveTheCorankOfAnAbnormalExtremalOut) {
   EXPECT_TRUE(result.times.empty());
 }
 
-// The directions that a short path hardly moves in look like those that an abnormal one does not.
-TEST(ConjugateTimes, AreUnknownWhereAKernelMayBeASmallNumber) {
-  const BoundaryValueProblem problem = test::vehicle({0, 0, 0, 0}, {0, 0, 0, 1e-3});
-  const ConjugateTimes result = times_of(problem, {0, 0, 0, 1e-3}, 1);
-  EXPECT_FALSE(result.known);
-  EXPECT_EQ(result.corank, std::nullopt);
+// The directions that a short path hardly moves in look like those that an abnormal one does not,
+// but for the units: steering in place is abnormal however little it is, and straight ahead is not.
+TEST(ConjugateTimes, ShortPathsTellTheirKernels) {
+  for (const double size : {1e-1, 1e-3, 1e-5}) {
+    const BoundaryValueProblem steer = test::vehicle({0, 0, 0, 0}, {0, 0, 0, size});
+    const ConjugateTimes in_place = times_of(steer, {0, 0, 0, size}, 1);
+    EXPECT_TRUE(in_place.known) << size;
+    EXPECT_EQ(in_place.corank, 1) << size;
+    EXPECT_TRUE(in_place.times.empty()) << size;
+    const BoundaryValueProblem roll = test::vehicle({0, 0, 0, 0}, {size, 0, 0, 0});
+    const ConjugateTimes ahead = times_of(roll, {size, 0, 0, 0}, 1);
+    EXPECT_TRUE(ahead.known) << size;
+    EXPECT_EQ(ahead.corank, 0) << size;
+    EXPECT_TRUE(ahead.times.empty()) << size;
+  }
+}
+
+// Dilations of the Engel group change nothing but the scale.
+TEST(ConjugateTimes, DilationsKeepThem) {
+  const std::vector<double> p{0.3, 0.8, 9, 11};
+  const ConjugateTimes whole = times_of(test::engel({0, 0, 0, 0}), p, 1);
+  ASSERT_TRUE(whole.known);
+  ASSERT_FALSE(whole.times.empty());
+  constexpr double kMagnified = 1e-9;
+  for (const double d : {1e-2, 1e-3, 1e-4}) {
+    const std::vector<double> small{d * p[0], d * p[1], p[2], p[3] / d};
+    const ConjugateTimes times = times_of(test::engel({0, 0, 0, 0}), small, 1);
+    ASSERT_TRUE(times.known) << d;
+    ASSERT_EQ(times.times.size(), whole.times.size()) << d;
+    for (std::size_t i = 0; i < times.times.size(); ++i) {
+      EXPECT_NEAR(times.times[i], whole.times[i], kMagnified) << d;
+    }
+  }
 }
 
 // Growth of the tangent flow (here 1e9) makes dq(T)/dp0 look singular; its plane does not.

@@ -55,7 +55,7 @@ std::optional<int> family_dimension(const BoundaryValueProblem& problem,
   std::vector<double> z;
   const auto tangent = end_point_tangent(problem, geodesic.p0, problem.time, steps, z);
   if (!tangent) return std::nullopt;
-  const Eigen::MatrixXd kernel = kernel_of(*tangent, 1e-8);
+  const Eigen::MatrixXd kernel = kernel_of(Units(problem, geodesic.p0.data()), *tangent, 1e-8);
   if (kernel.cols() != conjugate + corank) return std::nullopt;
   const auto n = static_cast<Eigen::Index>(geodesic.p0.size());
   const Eigen::Map<const Eigen::VectorXd> p(geodesic.p0.data(), n);

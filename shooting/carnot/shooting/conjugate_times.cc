@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "carnot/shooting/lagrangian_plane.h"
+#include "carnot/shooting/units.h"
 
 namespace carnot {
 namespace {
@@ -17,7 +18,8 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-// A phase point and the plane over it, in balanced coordinates (S^-1 X; S'P).
+// A phase point and the plane over it, in the units of a short extremal and balanced coordinates
+// (S^-1 X; S'P).
 struct Frame {
   double t = 0;
   std::vector<double> z;
@@ -28,8 +30,9 @@ struct Frame {
 
 class Planes {
  public:
-  Planes(const Segment& segment, const MatrixXd& s, int corank)
+  Planes(const Segment& segment, const Units& units, const MatrixXd& s, int corank)
       : segment_(segment),
+        units_(units),
         s_(s),
         inverse_(s.inverse()),
         corank_(corank),
@@ -92,7 +95,7 @@ class Planes {
     MatrixXd carried = from.plane;
     carried.topRows(n) = s_ * carried.topRows(n);
     carried.bottomRows(n) = inverse_ * carried.bottomRows(n);
-    carried = m * carried;
+    carried = units_.map(m) * carried;
     carried.topRows(n) = inverse_ * carried.topRows(n);
     carried.bottomRows(n) = s_ * carried.bottomRows(n);
     to.plane = orthonormal(carried);
@@ -107,6 +110,7 @@ class Planes {
   static constexpr double kPrecision = 1e-13;
 
   const Segment& segment_;
+  const Units& units_;
   MatrixXd s_;
   MatrixXd inverse_;
   int corank_;
@@ -124,8 +128,12 @@ Frame vertical(const Knots& knots) {
 // A typical graph from `begin` T to `end` T: the middle one by regularity, of those with the
 // smallest kernel. Near a time where X or P is singular the balance would make a phase turn too
 // fast to be seen.
-std::optional<Graph> typical_graph(
-    double begin, double end, const BoundaryValueProblem& problem, const Knots& knots, long steps) {
+std::optional<Graph> typical_graph(double begin,
+                                   double end,
+                                   const BoundaryValueProblem& problem,
+                                   const Units& units,
+                                   const Knots& knots,
+                                   long steps) {
   const int n = problem.segment.dof;
   const int last = std::max(1, static_cast<int>(end * knots.segments));
   const double piece = (knots.segments == 1 ? end : 1.0 / knots.segments) * problem.time;
@@ -141,7 +149,7 @@ std::optional<Graph> typical_graph(
       RowMajor m(2 * n, 2 * n);
       const StepPlan plan = StepPlan::equal(t, h, 1);
       if (!problem.segment.tangent_flow(plan, z.data(), m.data()).completed()) return std::nullopt;
-      plane = orthonormal(m * plane);
+      plane = orthonormal(units.map(m) * plane);
       if (t + h < first) continue;
       Graph next = graph_of(plane);
       if (next.balance.allFinite()) graphs.push_back(std::move(next));
@@ -162,12 +170,13 @@ std::optional<Graph> typical_graph(
 // later than that, such as exponentially.
 std::optional<Graph> balance_of(double fraction,
                                 const BoundaryValueProblem& problem,
+                                const Units& units,
                                 const Knots& knots,
                                 long steps) {
   constexpr double kLate = 0.9;
-  auto graph = typical_graph(0.5 * fraction, fraction, problem, knots, steps);
+  auto graph = typical_graph(0.5 * fraction, fraction, problem, units, knots, steps);
   if (!graph || graph->kernel == 0) return graph;
-  auto late = typical_graph(kLate, 1, problem, knots, steps);
+  auto late = typical_graph(kLate, 1, problem, units, knots, steps);
   return late && late->kernel < graph->kernel ? late : graph;
 }
 
@@ -188,16 +197,17 @@ bool tells_kernels(const Knots& knots) {
 // One pass at a given number of steps, balanced by what is before `fraction` T.
 ConjugateTimes follow(double fraction,
                       const BoundaryValueProblem& problem,
+                      const Units& units,
                       const Knots& knots,
                       long steps,
                       double doubt) {
   const int n = problem.segment.dof;
   ConjugateTimes result;
-  const std::optional<Graph> graph = balance_of(fraction, problem, knots, steps);
-  if (!graph || (graph->kernel > 0 && !tells_kernels(knots))) return result;
+  const std::optional<Graph> graph = balance_of(fraction, problem, units, knots, steps);
+  if (!graph || (graph->kernel > 0 && !units.scaled() && !tells_kernels(knots))) return result;
   result.corank = graph->kernel;
   if (graph->kernel == n) return result;
-  const Planes planes(problem.segment, graph->balance, graph->kernel);
+  const Planes planes(problem.segment, units, graph->balance, graph->kernel);
   Frame frame = vertical(knots);
   Frame clear = frame;  // the last frame whose count is beyond doubt
   int counted = 0;
@@ -242,10 +252,11 @@ ConjugateTimes conjugate_times(const BoundaryValueProblem& problem,
   // another balance, must agree.
   constexpr int kDoublings = 4;
   constexpr std::array kFractions{0.43, 0.31};
-  ConjugateTimes coarse = follow(kFractions[0], problem, knots, steps, doubt);
+  const Units units(problem, knots.at(0) + knots.dof);
+  ConjugateTimes coarse = follow(kFractions[0], problem, units, knots, steps, doubt);
   for (int i = 0; i < kDoublings; ++i) {
     steps *= 2;
-    ConjugateTimes fine = follow(kFractions[(i + 1) % 2], problem, knots, steps, doubt);
+    ConjugateTimes fine = follow(kFractions[(i + 1) % 2], problem, units, knots, steps, doubt);
     if (coarse.known && fine.known && coarse.times.size() == fine.times.size() &&
         coarse.corank == fine.corank) {
       return fine;

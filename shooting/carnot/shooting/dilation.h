@@ -24,6 +24,8 @@ class Dilation {
 
   [[nodiscard]] int dof() const { return static_cast<int>(weights_.size()); }
   [[nodiscard]] const std::vector<int>& weights() const { return weights_; }
+  // Columns, orthonormal in the metric at `from` (of what the constraints forbid too).
+  [[nodiscard]] const Eigen::MatrixXd& basis() const { return basis_; }
   // Coordinates y, lengths, of the displacement from `from`; and back.
   [[nodiscard]] Eigen::VectorXd coordinates(const double* q) const;
   void place(const Eigen::VectorXd& y, double* q) const;
@@ -34,7 +36,7 @@ class Dilation {
 
  private:
   std::vector<double> from_;
-  Eigen::MatrixXd basis_;  // columns, orthonormal in the metric at `from`, adapted to the flag
+  Eigen::MatrixXd basis_;
   Eigen::MatrixXd inverse_;
   std::vector<int> weights_;
   double unit_ = 1;  // S

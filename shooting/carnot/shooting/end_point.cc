@@ -32,8 +32,9 @@ std::optional<Eigen::MatrixXd> end_point_tangent(const BoundaryValueProblem& pro
   return Eigen::MatrixXd(m.rightCols(n));
 }
 
-Eigen::MatrixXd kernel_of(const Eigen::MatrixXd& tangent, double tolerance) {
-  const auto n = tangent.cols();
+Eigen::MatrixXd kernel_of(const Units& units, const Eigen::MatrixXd& raw, double tolerance) {
+  const auto n = raw.cols();
+  const Eigen::MatrixXd tangent = units.tangent(raw);
   const double q_size = tangent.topRows(n).norm();
   const double p_size = tangent.bottomRows(n).norm();
   Eigen::MatrixXd columns = tangent;
@@ -45,7 +46,7 @@ Eigen::MatrixXd kernel_of(const Eigen::MatrixXd& tangent, double tolerance) {
   const Eigen::MatrixXd kernel = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>().solve(
       svd.matrixV().rightCols(nullity));
   if (nullity == 0) return kernel;
-  return Eigen::HouseholderQR<Eigen::MatrixXd>(kernel).householderQ() *
+  return Eigen::HouseholderQR<Eigen::MatrixXd>(units.momenta(kernel)).householderQ() *
          Eigen::MatrixXd::Identity(n, nullity);
 }
 
@@ -56,26 +57,33 @@ double correct(const BoundaryValueProblem& problem,
                Eigen::MatrixXd& tangent,
                double rank) {
   constexpr int kMaxIterations = 6;
+  constexpr double kCautious = 1e-5;  // rank, where a full step went too far along a weak direction
   const int n = problem.segment.dof;
   double best = std::numeric_limits<double>::infinity();
+  bool cautious = false;
+  Eigen::VectorXd residual(n);
   std::vector<double> trial = p0;
   std::vector<double> z;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     const auto at_trial = end_point_tangent(problem, trial, problem.time, steps, z);
-    if (!at_trial) break;
-    const double error = largest_difference(z.data(), problem.to.data(), n);
-    if (!(error < best)) break;
-    const bool gained = error < 0.5 * best;
-    best = error;
-    p0 = trial;
-    tangent = *at_trial;
-    if (!gained || error <= tolerance) break;
-    Eigen::VectorXd residual(n);
-    for (int j = 0; j < n; ++j) residual[j] = z[j] - problem.to[j];
+    const double error = at_trial ? largest_difference(z.data(), problem.to.data(), n)
+                                  : std::numeric_limits<double>::infinity();
+    if (error < best) {
+      const bool gained = error < 0.5 * best;
+      best = error;
+      p0 = trial;
+      tangent = *at_trial;
+      if (!gained || error <= tolerance) break;
+      for (int j = 0; j < n; ++j) residual[j] = z[j] - problem.to[j];
+    } else {
+      if (cautious || iteration == 0) break;
+      cautious = true;
+    }
+    const Units units(problem, p0.data());
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> inverse;
-    inverse.setThreshold(rank);
-    inverse.compute(tangent.topRows(n));
-    const Eigen::VectorXd step = inverse.solve(residual);
+    inverse.setThreshold(cautious ? std::max(rank, kCautious) : rank);
+    inverse.compute(units.tangent(tangent).topRows(n));
+    const Eigen::VectorXd step = units.momenta(inverse.solve(units.displacement(residual)));
     for (int j = 0; j < n; ++j) trial[j] = p0[j] - step[j];
   }
   return best;
@@ -89,7 +97,7 @@ void reduce(const BoundaryValueProblem& problem,
   constexpr double kGenerous = 1e-4;
   constexpr double kSamePath = 1e-4;  // of its extent, where it is at a time without symmetry
   constexpr double kOnTheWay = 0.43;
-  const Eigen::MatrixXd kernel = kernel_of(tangent, kGenerous);
+  const Eigen::MatrixXd kernel = kernel_of(Units(problem, p0.data()), tangent, kGenerous);
   if (kernel.cols() == 0) return;
   const Eigen::Map<const Eigen::VectorXd> p(p0.data(), static_cast<Eigen::Index>(p0.size()));
   const Eigen::VectorXd least = p - kernel * (kernel.transpose() * p);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "carnot/shooting/boundary_value_problem.h"
+#include "carnot/shooting/units.h"
 
 namespace carnot {
 
@@ -23,7 +24,9 @@ std::optional<Eigen::MatrixXd> end_point_tangent(const BoundaryValueProblem& pro
 // An orthonormal basis of the directions of p0 that do not move q(t), n x nullity: where the plane
 // that the columns span is within an angle `tolerance` of the vertical. Growth of the columns,
 // which makes dq(t)/dp0 look singular, does not matter.
-Eigen::MatrixXd kernel_of(const Eigen::MatrixXd& tangent, double tolerance = 1e-9);
+Eigen::MatrixXd kernel_of(const Units& units,
+                          const Eigen::MatrixXd& tangent,
+                          double tolerance = 1e-9);
 
 // Singular values of a Jacobian below this, relative, are round-off.
 inline constexpr double kRankThreshold = 1e-13;

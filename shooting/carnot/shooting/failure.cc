@@ -38,7 +38,7 @@ EndPoint end_point(const BoundaryValueProblem& problem, const std::vector<double
   if (!tangent) return {"the flow from its momentum cannot be integrated"};
   const Eigen::VectorXd values =
       Eigen::JacobiSVD<Eigen::MatrixXd>(tangent->topRows(n)).singularValues();
-  const auto rank = n - static_cast<int>(kernel_of(*tangent).cols());
+  const auto rank = n - static_cast<int>(kernel_of(Units(problem, p0.data()), *tangent).cols());
   const double condition = values[0] / values[n - 1];
   text << "the flow from its momentum ends " << largest_difference(z.data(), problem.to.data(), n)
        << " away, where dq(T)/dp(0) has rank " << rank << " of " << n << " and condition "

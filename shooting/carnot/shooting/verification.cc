@@ -95,6 +95,7 @@ std::optional<Extremal> verify(const BoundaryValueProblem& problem,
                                long steps,
                                double tolerance,
                                Reason* reason) {
+  constexpr double kPart = 1e-3;  // of the distance: a path that misses by more goes elsewhere
   Reason unused = Reason::kNone;
   Reason& why = reason != nullptr ? *reason : unused;
   steps = enough_steps(problem, knots, steps, tolerance);
@@ -108,15 +109,17 @@ std::optional<Extremal> verify(const BoundaryValueProblem& problem,
   const double distance =
       largest_difference(problem.from.data(), problem.to.data(), problem.segment.dof);
   const double aim = 1e-3 * tolerance * (distance > 0 ? std::min(1.0, distance) : 1);
-  if (correct(problem, steps, aim, p0, tangent) <= tolerance) {
+  const double allowed = distance > 0 ? std::min(tolerance, kPart * distance) : tolerance;
+  if (correct(problem, steps, aim, p0, tangent) <= allowed) {
     // Holonomic constraints: p along the rows of Dh moves nothing.
     reduce(problem, steps, aim, p0, tangent);
-    extremal.singular = kernel_of(tangent).cols() > problem.segment.holonomic;
+    extremal.singular =
+        kernel_of(Units(problem, p0.data()), tangent).cols() > problem.segment.holonomic;
     if (problem.segment.holonomic > 0) project(problem, p0);
     extremal.knots = knots_of(problem, p0, 1, tighter);
     error = largest_difference(extremal.knots.at(1), problem.to.data(), problem.segment.dof);
   }
-  if (error <= tolerance) {
+  if (error <= allowed) {
     geodesic.verification = Verification::kSingle;
     geodesic.endpoint_error = error;
   } else {
