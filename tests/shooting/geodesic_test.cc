@@ -320,7 +320,7 @@ std::string failure(const BoundaryValueProblem& problem, const GeodesicOptions& 
 TEST(Geodesic, FailureSaysWhyAndWhatToTry) {
   GeodesicOptions options;
   options.starts = 1;  // the straight line, which collapses
-  const std::string collapsed = failure(test::vehicle({0, 0, 0, 0}, {0, 1e-2, 0, 0}), options);
+  const std::string collapsed = failure(test::vehicle({0, 0, 0, 0}, {0, 0.5, 0, 0}), options);
   EXPECT_NE(collapsed.find("collapsed"), std::string::npos) << collapsed;
   EXPECT_NE(collapsed.find("try more --starts"), std::string::npos) << collapsed;
   options = {};

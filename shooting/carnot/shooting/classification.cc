@@ -55,19 +55,23 @@ std::optional<int> family_dimension(const BoundaryValueProblem& problem,
   std::vector<double> z;
   const auto tangent = end_point_tangent(problem, geodesic.p0, problem.time, steps, z);
   if (!tangent) return std::nullopt;
-  const Eigen::MatrixXd kernel = kernel_of(Units(problem, geodesic.p0.data()), *tangent, 1e-8);
+  const Units units(problem, geodesic.p0.data());
+  const Eigen::MatrixXd kernel = kernel_of(units, *tangent, 1e-8);
   if (kernel.cols() != conjugate + corank) return std::nullopt;
   const auto n = static_cast<Eigen::Index>(geodesic.p0.size());
   const Eigen::Map<const Eigen::VectorXd> p(geodesic.p0.data(), n);
-  const double step = kStep * p.norm();
+  const double distance = largest_difference(
+      problem.from.data(), problem.to.data(), static_cast<int>(problem.from.size()));
+  const double part = kTolerance * std::min(1.0, distance);
   int moved = 0;
   for (Eigen::Index j = 0; j < kernel.cols(); ++j) {
+    const double step = kStep * units.size(p) / units.size(kernel.col(j));
     const Eigen::VectorXd aside = p + step * kernel.col(j);
     std::vector<double> trial(aside.data(), aside.data() + n);
     Eigen::MatrixXd there;
-    const double error = correct(problem, steps, 1e-3 * kTolerance, trial, there);
+    const double error = correct(problem, steps, 1e-3 * part, trial, there);
     const Eigen::Map<const Eigen::VectorXd> reached(trial.data(), n);
-    if (error <= kTolerance && (reached - p).norm() > 0.5 * step) ++moved;
+    if (error <= part && units.size(reached - p) > 0.5 * kStep * units.size(p)) ++moved;
   }
   if (moved == kernel.cols()) return conjugate;
   return moved == 0 ? std::optional<int>(0) : std::nullopt;

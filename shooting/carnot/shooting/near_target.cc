@@ -46,13 +46,14 @@ bool settle(const BoundaryValueProblem& problem, Path& path) {
 }  // namespace
 
 std::optional<NearTarget> NearTarget::of(const BoundaryValueProblem& problem) {
-  constexpr double kEasy = 0.15;  // gauge
-  constexpr double kWorthIt = 1.5;
+  constexpr double kEasy = 0.03;  // displacement in units of S that relaxation reaches
+  constexpr double kWorthIt = 1.1;
   if (!problem.segment.has_transcription()) return std::nullopt;
   auto dilation = Dilation::at_start(problem);
   if (!dilation) return std::nullopt;
   const double gauge = dilation->gauge(dilation->coordinates(problem.to.data()));
-  const double factor = kEasy / gauge;
+  const double easy = std::pow(kEasy, 1.0 / dilation->weights().back());
+  const double factor = easy / gauge;
   if (!(factor > kWorthIt) || !std::isfinite(factor)) return std::nullopt;
   return NearTarget(problem, std::move(*dilation), factor);
 }

@@ -64,6 +64,10 @@ MatrixXd Units::tangent(const MatrixXd& columns) const {
   return scaled;
 }
 
+double Units::size(const VectorXd& p) const {
+  return scaled_ ? (e_.transpose() * p / c_).norm() : p.norm();
+}
+
 VectorXd Units::displacement(const VectorXd& q) const {
   return scaled_ ? VectorXd(inverse_ * q) : q;
 }

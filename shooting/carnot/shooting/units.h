@@ -22,6 +22,8 @@ class Units {
   // The tangent flow m, 2n x 2n, and its last n columns (dq/dp0; dp/dp0).
   [[nodiscard]] Eigen::MatrixXd map(const Eigen::MatrixXd& m) const;
   [[nodiscard]] Eigen::MatrixXd tangent(const Eigen::MatrixXd& columns) const;
+  // The norm of a momentum.
+  [[nodiscard]] double size(const Eigen::VectorXd& p) const;
   // From a displacement, and back to momenta.
   [[nodiscard]] Eigen::VectorXd displacement(const Eigen::VectorXd& q) const;
   [[nodiscard]] Eigen::MatrixXd momenta(const Eigen::MatrixXd& p) const;
