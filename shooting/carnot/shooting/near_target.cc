@@ -65,12 +65,11 @@ BoundaryValueProblem NearTarget::dilated(double factor) const {
   return far;
 }
 
-bool NearTarget::shrink(Path& path) const {
+bool NearTarget::shrink(double factor, Path& path) const {
   constexpr double kLongest = 0.5;  // step of the dilation, as a factor,
   constexpr double kShortest = 0.95;
   const int n = path.dof;
   std::vector<double> exponent(dilation_.weights().begin(), dilation_.weights().end());
-  double factor = factor_;
   for (double step = kLongest; factor > 1;) {
     const double next = std::max(1.0, factor * step);
     const BoundaryValueProblem nearer = next > 1 ? dilated(next) : problem_;

@@ -22,6 +22,7 @@ constexpr int kSegments = 8;      // of multiple shooting; divides the intervals
 constexpr long kFirstSteps = 32;  // of the method over [0, T]
 constexpr int kRound = 8;         // starts between two looks at the list
 constexpr int kMinStarts = 16;
+constexpr int kMinNear = 24;        // from two dilations of a near target
 constexpr int kMinEasy = 12;        // where most of them agree
 constexpr int kMaxStarts = 96;      // when the best extremal keeps changing
 constexpr int kMaxIntervals = 128;  // of the grids that paths are relaxed on
@@ -133,6 +134,7 @@ std::size_t Search::best() const {
 
 bool Search::settled() {
   if (options_.starts > 0 || extremals_.empty() || starts_ < kMinEasy) return false;
+  if (near_ && starts_ < kMinNear) return false;
   const bool early = starts_ < kMinStarts;
   if (early && (wants_more() || converged_ < kMostConverged * starts_)) return false;
   const ConjugateTimes& conjugate = conjugate_times_of(problem_, extremals_[best()]);
@@ -317,7 +319,8 @@ Search::Candidate Search::relax_start(int i) const {
   constexpr double kHeld = 0.02;
   constexpr int kAttempts = 3;
   constexpr double kStiffer = 8;
-  const BoundaryValueProblem easy = near_ ? near_->dilated() : problem_;
+  const double factor = near_ ? near_->factor(i) : 1;
+  const BoundaryValueProblem easy = near_ ? near_->dilated(factor) : problem_;
   const Start start = make_start(easy, options_.seed, i, intervals_);
   RelaxationOptions relaxation = start.relaxation;
   Candidate candidate;
@@ -332,7 +335,7 @@ Search::Candidate Search::relax_start(int i) const {
     candidate.residual = tightened.residual / largest_momentum(candidate.path);
     if (candidate.found || violation < kHeld || candidate.stiffness > 0) break;
   }
-  if (candidate.found && near_) candidate.found = near_->shrink(candidate.path);
+  if (candidate.found && near_) candidate.found = near_->shrink(factor, candidate.path);
   return candidate;
 }
 
