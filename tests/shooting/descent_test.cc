@@ -22,13 +22,13 @@ namespace {
 
 std::optional<Path> relaxed(const BoundaryValueProblem& problem, std::uint64_t seed, int number) {
   const auto near = NearTarget::of(problem);
-  const BoundaryValueProblem easy = near ? near->dilated(near->factor(number)) : problem;
+  const BoundaryValueProblem easy = near ? near->easy(near->way(number)) : problem;
   Start start = make_start(easy, seed, number);
   for (int stiffer = 0; stiffer < 3; ++stiffer, start.relaxation.penalty *= 8) {
     Path path = start.path;
     relax(easy, start.relaxation, path);
     if (!tighten(easy, {}, path).converged) continue;
-    if (!near || near->shrink(near->factor(number), path)) return path;
+    if (!near || near->shrink(near->way(number), path)) return path;
   }
   return std::nullopt;
 }

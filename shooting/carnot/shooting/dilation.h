@@ -23,6 +23,7 @@ class Dilation {
   static std::optional<Dilation> at_start(const BoundaryValueProblem& problem);
 
   [[nodiscard]] int dof() const { return static_cast<int>(weights_.size()); }
+  [[nodiscard]] double unit() const { return unit_; }  // S, the length of a radian (starts.h)
   [[nodiscard]] const std::vector<int>& weights() const { return weights_; }
   // Columns, orthonormal in the metric at `from` (of what the constraints forbid too).
   [[nodiscard]] const Eigen::MatrixXd& basis() const { return basis_; }
@@ -31,7 +32,7 @@ class Dilation {
   void place(const Eigen::VectorXd& y, double* q) const;
   // y with each coordinate multiplied by factor^weight.
   [[nodiscard]] Eigen::VectorXd scaled(Eigen::VectorXd y, double factor) const;
-  // max (|y_j| / S)^(1/w_j), S the length of a radian (starts.h).
+  // max (|y_j| / S)^(1/w_j).
   [[nodiscard]] double gauge(const Eigen::VectorXd& y) const;
 
  private:
@@ -39,7 +40,7 @@ class Dilation {
   Eigen::MatrixXd basis_;
   Eigen::MatrixXd inverse_;
   std::vector<int> weights_;
-  double unit_ = 1;  // S
+  double unit_ = 1;
 };
 
 }  // namespace carnot

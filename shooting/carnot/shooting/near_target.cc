@@ -51,32 +51,44 @@ std::optional<NearTarget> NearTarget::of(const BoundaryValueProblem& problem) {
   if (!problem.segment.has_transcription()) return std::nullopt;
   auto dilation = Dilation::at_start(problem);
   if (!dilation) return std::nullopt;
-  const double gauge = dilation->gauge(dilation->coordinates(problem.to.data()));
-  const double easy = std::pow(kEasy, 1.0 / dilation->weights().back());
-  const double factor = easy / gauge;
-  if (!(factor > kWorthIt) || !std::isfinite(factor)) return std::nullopt;
-  return NearTarget(problem, std::move(*dilation), factor);
+  const VectorXd y = dilation->coordinates(problem.to.data());
+  const auto factor = [&](double share) {
+    return std::pow(share, 1.0 / dilation->weights().back());
+  };
+  const double dilated = factor(kEasy) / dilation->gauge(y);
+  const double stretched = factor(kEasy * dilation->unit() / y.norm());
+  if (!(dilated > kWorthIt) || !std::isfinite(dilated)) return std::nullopt;
+  return NearTarget(problem, std::move(*dilation), dilated, std::max(1.0, stretched));
 }
 
-BoundaryValueProblem NearTarget::dilated(double factor) const {
+NearTarget::Way NearTarget::way(int start) const {
+  if (start / 2 % 2 == 1) return {stretched_, true};
+  return {start / 4 % 2 == 0 ? dilated_ : std::max(1.0, 0.5 * dilated_), false};
+}
+
+BoundaryValueProblem NearTarget::easy(const Way& way) const {
+  if (way.factor == 1) return problem_;
   BoundaryValueProblem far = problem_;
-  dilation_.place(dilation_.scaled(dilation_.coordinates(problem_.to.data()), factor),
+  const VectorXd y = dilation_.coordinates(problem_.to.data());
+  const double all = std::pow(way.factor, dilation_.weights().back());
+  dilation_.place(way.straight ? VectorXd(all * y) : dilation_.scaled(y, way.factor),
                   far.to.data());
   return far;
 }
 
-bool NearTarget::shrink(double factor, Path& path) const {
+bool NearTarget::shrink(Way way, Path& path) const {
   constexpr double kLongest = 0.5;  // step of the dilation, as a factor,
   constexpr double kShortest = 0.95;
   const int n = path.dof;
   std::vector<double> exponent(dilation_.weights().begin(), dilation_.weights().end());
-  for (double step = kLongest; factor > 1;) {
-    const double next = std::max(1.0, factor * step);
-    const BoundaryValueProblem nearer = next > 1 ? dilated(next) : problem_;
+  for (double step = kLongest; way.factor > 1;) {
+    const Way next{std::max(1.0, way.factor * step), way.straight};
+    const BoundaryValueProblem nearer = easy(next);
+    const double part = next.factor / way.factor;
     const VectorXd end = dilation_.coordinates(nearer.to.data());
     const MatrixXd beside = beside_line(dilation_, path);
     VectorXd ratio(n);
-    for (int j = 0; j < n; ++j) ratio[j] = std::pow(next / factor, exponent[j]);
+    for (int j = 0; j < n; ++j) ratio[j] = std::pow(part, exponent[j]);
     Path trial = path;
     for (int i = 1; i < path.intervals; ++i) {
       const double share = static_cast<double>(i) / path.intervals;
@@ -93,10 +105,10 @@ bool NearTarget::shrink(double factor, Path& path) const {
       const double shrunk =
           reached.row(j).cwiseAbs().maxCoeff() / beside.row(j).cwiseAbs().maxCoeff();
       if (!(shrunk > 0)) continue;  // or not a number, where there was nothing
-      exponent[j] = std::clamp(std::log(shrunk) / std::log(next / factor), 0.0, 5.0);
+      exponent[j] = std::clamp(std::log(shrunk) / std::log(part), 0.0, 5.0);
     }
     path = std::move(trial);
-    factor = next;
+    way = next;
     step = std::max(kLongest, step * step);
   }
   return true;

@@ -7,7 +7,6 @@
 // of the dilation a coordinate of the path shrinks is read off the last step.
 #pragma once
 
-#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -22,26 +21,36 @@ class NearTarget {
   // Nothing where the problem is easy as it is, or has no dilation.
   static std::optional<NearTarget> of(const BoundaryValueProblem& problem);
 
-  // The dilation that a start uses: where relaxation does best, or half as much, or mostly none
-  // where that is near. On the way back extremals meet others, and what is found from one may be
-  // lost from the other.
-  [[nodiscard]] double factor(int start) const {
-    const int share = factor_ < 2 ? 4 : 2;
-    return start / 2 % share == 0 ? factor_ : std::max(1.0, 0.5 * factor_);
-  }
+  // A way to the target: by dilations, or straight, by stretching its displacement as it is, from
+  // where the path is about `factor` times larger.
+  struct Way {
+    double factor = 1;
+    bool straight = false;
+  };
+  // The one that a start uses: by dilation from where relaxation does best, straight, or from half
+  // or a quarter of the dilation. On the way back extremals meet others, and what is found by one
+  // may be lost by another.
+  [[nodiscard]] Way way(int start) const;
   // The easy problem.
-  [[nodiscard]] BoundaryValueProblem dilated(double factor) const;
+  [[nodiscard]] BoundaryValueProblem easy(const Way& way) const;
   // From a discrete extremal of the easy problem to one of the problem itself. False when it is
   // lost on the way.
-  bool shrink(double factor, Path& path) const;
+  bool shrink(Way way, Path& path) const;
 
  private:
-  NearTarget(const BoundaryValueProblem& problem, Dilation dilation, double factor)
-      : problem_(problem), dilation_(std::move(dilation)), factor_(factor) {}
+  NearTarget(const BoundaryValueProblem& problem,
+             Dilation dilation,
+             double dilated,
+             double stretched)
+      : problem_(problem),
+        dilation_(std::move(dilation)),
+        dilated_(dilated),
+        stretched_(stretched) {}
 
   const BoundaryValueProblem& problem_;
   Dilation dilation_;
-  double factor_;
+  double dilated_;  // factors of the ways
+  double stretched_;
 };
 
 }  // namespace carnot

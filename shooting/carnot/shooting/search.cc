@@ -22,7 +22,7 @@ constexpr int kSegments = 8;      // of multiple shooting; divides the intervals
 constexpr long kFirstSteps = 32;  // of the method over [0, T]
 constexpr int kRound = 8;         // starts between two looks at the list
 constexpr int kMinStarts = 16;
-constexpr int kMinNear = 24;        // from two dilations of a near target
+constexpr int kMinNear = 24;        // by the ways to a near target
 constexpr int kMinEasy = 12;        // where most of them agree
 constexpr int kMaxStarts = 96;      // when the best extremal keeps changing
 constexpr int kMaxIntervals = 128;  // of the grids that paths are relaxed on
@@ -72,6 +72,7 @@ bool Search::run() {
       by_paths ? relax_round(count) : momentum_round(count);
     }
   }
+  if (extremals_.empty() || descends_) absorb_skimming();
   for (int round = 0; round < sweeps && lacks() && !extremals_.empty(); ++round) {
     if (!goes_on(0.5 + 0.5 * round / sweeps)) return false;
     sweep_round(round);
@@ -192,6 +193,27 @@ bool Search::descend_round() {
   return extremals_[best()].geodesic.action < before - kSameAction * std::abs(before);
 }
 
+void Search::absorb_skimming() {
+  constexpr std::size_t kMost = 8;
+  const auto action = [&](const Path& path) {
+    return discrete_action(problem_.segment, problem_.time / path.intervals, path);
+  };
+  std::sort(skimming_.begin(), skimming_.end(), [&](const Path& a, const Path& b) {
+    return action(a) < action(b);
+  });
+  std::vector<Candidate> candidates;
+  for (const Path& path : skimming_) {
+    if (!extremals_.empty() && action(path) > extremals_[best()].geodesic.action) break;
+    const bool twice = !candidates.empty() && same_nodes(candidates.back().path, path);
+    if (twice || candidates.size() == kMost) continue;
+    candidates.emplace_back();
+    candidates.back().found = true;
+    candidates.back().path = path;
+  }
+  absorb(candidates);
+  starts_ -= static_cast<int>(candidates.size());
+}
+
 void Search::momentum_round(int count) {
   std::vector<Outcome> polished(count);
   parallel_for(count, threads_, [&](int i) {
@@ -280,6 +302,7 @@ Search::Polished Search::absorb(const std::vector<Candidate>& candidates) {
   for (const Candidate& candidate : candidates) {
     if (candidate.residual < least_residual_) least_residual_ = candidate.residual;
     blocked_ += candidate.blocked ? 1 : 0;
+    if (candidate.skims) skimming_.push_back(candidate.path);
     if (!candidate.found) continue;
     const std::size_t known = find_discrete(candidate.path);
     if (known < discrete_.size()) {
@@ -319,8 +342,8 @@ Search::Candidate Search::relax_start(int i) const {
   constexpr double kHeld = 0.02;
   constexpr int kAttempts = 3;
   constexpr double kStiffer = 8;
-  const double factor = near_ ? near_->factor(i) : 1;
-  const BoundaryValueProblem easy = near_ ? near_->dilated(factor) : problem_;
+  const NearTarget::Way way = near_ ? near_->way(i) : NearTarget::Way{};
+  const BoundaryValueProblem easy = near_ ? near_->easy(way) : problem_;
   const Start start = make_start(easy, options_.seed, i, intervals_);
   RelaxationOptions relaxation = start.relaxation;
   Candidate candidate;
@@ -330,12 +353,13 @@ Search::Candidate Search::relax_start(int i) const {
     const double violation = relax(easy, relaxation, candidate.path).violation;
     if (!(violation < kCollapsed)) continue;
     const DiscreteNewton tightened = tighten(easy, {}, candidate.path);
-    candidate.blocked = tightened.left_chart || skims_chart_end(easy.segment, candidate.path);
+    candidate.skims = tightened.converged && skims_chart_end(easy.segment, candidate.path);
+    candidate.blocked = tightened.left_chart || candidate.skims;
     candidate.found = tightened.converged && !candidate.blocked;
     candidate.residual = tightened.residual / largest_momentum(candidate.path);
     if (candidate.found || violation < kHeld || candidate.stiffness > 0) break;
   }
-  if (candidate.found && near_) candidate.found = near_->shrink(factor, candidate.path);
+  if (candidate.found && near_) candidate.found = near_->shrink(way, candidate.path);
   return candidate;
 }
 
