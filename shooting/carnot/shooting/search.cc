@@ -72,7 +72,6 @@ bool Search::run() {
       by_paths ? relax_round(count) : momentum_round(count);
     }
   }
-  if (extremals_.empty() || descends_) absorb_skimming();
   for (int round = 0; round < sweeps && lacks() && !extremals_.empty(); ++round) {
     if (!goes_on(0.5 + 0.5 * round / sweeps)) return false;
     sweep_round(round);
@@ -193,27 +192,6 @@ bool Search::descend_round() {
   return extremals_[best()].geodesic.action < before - kSameAction * std::abs(before);
 }
 
-void Search::absorb_skimming() {
-  constexpr std::size_t kMost = 8;
-  const auto action = [&](const Path& path) {
-    return discrete_action(problem_.segment, problem_.time / path.intervals, path);
-  };
-  std::sort(skimming_.begin(), skimming_.end(), [&](const Path& a, const Path& b) {
-    return action(a) < action(b);
-  });
-  std::vector<Candidate> candidates;
-  for (const Path& path : skimming_) {
-    if (!extremals_.empty() && action(path) > extremals_[best()].geodesic.action) break;
-    const bool twice = !candidates.empty() && same_nodes(candidates.back().path, path);
-    if (twice || candidates.size() == kMost) continue;
-    candidates.emplace_back();
-    candidates.back().found = true;
-    candidates.back().path = path;
-  }
-  absorb(candidates);
-  starts_ -= static_cast<int>(candidates.size());
-}
-
 void Search::momentum_round(int count) {
   std::vector<Outcome> polished(count);
   parallel_for(count, threads_, [&](int i) {
@@ -302,7 +280,6 @@ Search::Polished Search::absorb(const std::vector<Candidate>& candidates) {
   for (const Candidate& candidate : candidates) {
     if (candidate.residual < least_residual_) least_residual_ = candidate.residual;
     blocked_ += candidate.blocked ? 1 : 0;
-    if (candidate.skims) skimming_.push_back(candidate.path);
     if (!candidate.found) continue;
     const std::size_t known = find_discrete(candidate.path);
     if (known < discrete_.size()) {
@@ -353,8 +330,7 @@ Search::Candidate Search::relax_start(int i) const {
     const double violation = relax(easy, relaxation, candidate.path).violation;
     if (!(violation < kCollapsed)) continue;
     const DiscreteNewton tightened = tighten(easy, {}, candidate.path);
-    candidate.skims = tightened.converged && skims_chart_end(easy.segment, candidate.path);
-    candidate.blocked = tightened.left_chart || candidate.skims;
+    candidate.blocked = tightened.left_chart || skims_chart_end(easy.segment, candidate.path);
     candidate.found = tightened.converged && !candidate.blocked;
     candidate.residual = tightened.residual / largest_momentum(candidate.path);
     if (candidate.found || violation < kHeld || candidate.stiffness > 0) break;

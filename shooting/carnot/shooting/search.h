@@ -58,8 +58,7 @@ class Search {
   // A relaxed path that satisfies the discrete equations.
   struct Candidate {
     bool found = false;
-    bool blocked = false;  // the coordinates end where it went,
-    bool skims = false;    // or it comes nearer to their end than the grid resolves
+    bool blocked = false;  // the coordinates end where it went
     int stiffness = 0;     // how often the penalty had to be raised
     double residual = std::numeric_limits<double>::infinity();  // relative to the momenta
     Path path;
@@ -78,9 +77,6 @@ class Search {
   void momentum_round(int count);
   // Goes down from the best extremal, which is no minimum. False where that gives nothing better.
   bool descend_round();
-  // Those that skim the end of the coordinates are mostly artefacts, and are polished only where
-  // nothing better is known: the best few that have less action.
-  void absorb_skimming();
   // Energies from that of the shortest extremal to twice that, or to the longest one.
   void sweep_round(int round);
   // What became of new discrete extremals.
@@ -135,7 +131,6 @@ class Search {
   int intervals_ = 32;           // of the grid that paths are relaxed on
   bool descends_ = false;        // the best extremal so far is no minimum
   std::vector<Discrete> discrete_;
-  std::vector<Path> skimming_;
   Reason furthest_ = Reason::kNone;
   double least_residual_ = std::numeric_limits<double>::infinity();
   int starts_ = 0;
