@@ -79,27 +79,23 @@ std::optional<int> family_dimension(const BoundaryValueProblem& problem,
 
 }  // namespace
 
-const ConjugateTimes& conjugate_times_of(const BoundaryValueProblem& problem, Extremal& extremal) {
-  if (!extremal.conjugate) {
-    extremal.conjugate.emplace();
-    if (problem.segment.holonomic == 0) {
-      const long steps = extremal.geodesic.plan.count / 2;
-      extremal.conjugate =
-          conjugate_times(problem, extremal.knots, steps, doubt_of(problem, extremal.geodesic));
-    }
-  }
-  return *extremal.conjugate;
+namespace {
+
+ConjugateTimes conjugate_times_along(const BoundaryValueProblem& problem,
+                                     const Extremal& extremal,
+                                     ConjugateTimesOptions options) {
+  if (problem.segment.holonomic > 0) return {};
+  options.doubt = doubt_of(problem, extremal.geodesic);
+  const long steps = extremal.geodesic.plan.count / 2;
+  return conjugate_times(problem, extremal.knots, steps, options);
 }
 
-void complete(const BoundaryValueProblem& problem, long samples, Extremal& extremal) {
-  Geodesic& geodesic = extremal.geodesic;
-  const long steps = geodesic.plan.count;
-  add_extremes(problem, extremal.knots, steps, geodesic);
-  if (samples > 0) geodesic.trajectory = survey(problem, extremal.knots, steps, samples).trajectory;
-  const ConjugateTimes& conjugate = conjugate_times_of(problem, extremal);
+// Morse index, label, abnormal and family dimension.
+void set_label(const BoundaryValueProblem& problem,
+               const ConjugateTimes& conjugate,
+               Geodesic& geodesic) {
   if (conjugate.corank) geodesic.abnormal = *conjugate.corank > 0;
   if (!conjugate.known) return;
-  geodesic.conjugate_times = conjugate.times;
   const auto inner = static_cast<int>(conjugate.times.size()) - conjugate.at_end;
   geodesic.morse_index = inner;
   geodesic.family_dimension = 0;
@@ -117,6 +113,30 @@ void complete(const BoundaryValueProblem& problem, long samples, Extremal& extre
   } else if (conjugate.times.empty()) {
     geodesic.label = Label::kLocallyMinimal;
   }
+}
+
+}  // namespace
+
+const ConjugateTimes& conjugate_times_of(const BoundaryValueProblem& problem, Extremal& extremal) {
+  if (!extremal.conjugate) extremal.conjugate = conjugate_times_along(problem, extremal, {});
+  return *extremal.conjugate;
+}
+
+void label(const BoundaryValueProblem& problem, Extremal& extremal) {
+  ConjugateTimesOptions options;
+  options.precision = 1;
+  add_extremes(problem, extremal.knots, extremal.geodesic.plan.count, extremal.geodesic);
+  set_label(problem, conjugate_times_along(problem, extremal, options), extremal.geodesic);
+}
+
+void complete(const BoundaryValueProblem& problem, long samples, Extremal& extremal) {
+  Geodesic& geodesic = extremal.geodesic;
+  const long steps = geodesic.plan.count;
+  add_extremes(problem, extremal.knots, steps, geodesic);
+  if (samples > 0) geodesic.trajectory = survey(problem, extremal.knots, steps, samples).trajectory;
+  const ConjugateTimes& conjugate = conjugate_times_of(problem, extremal);
+  if (conjugate.known) geodesic.conjugate_times = conjugate.times;
+  set_label(problem, conjugate, geodesic);
 }
 
 }  // namespace carnot

@@ -9,6 +9,9 @@ namespace carnot {
 // family dimension, as far as they can be known.
 void complete(const BoundaryValueProblem& problem, long samples, Extremal& extremal);
 
+// The same without samples and times: these are counted only, which is faster where there are many.
+void label(const BoundaryValueProblem& problem, Extremal& extremal);
+
 // The conjugate times of the extremal, computed once. Unknown with holonomic constraints, where
 // momenta along the rows of Dh move nothing.
 const ConjugateTimes& conjugate_times_of(const BoundaryValueProblem& problem, Extremal& extremal);

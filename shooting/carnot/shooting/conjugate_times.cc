@@ -30,12 +30,14 @@ struct Frame {
 
 class Planes {
  public:
-  Planes(const Segment& segment, const Units& units, const MatrixXd& s, int corank)
+  Planes(
+      const Segment& segment, const Units& units, const MatrixXd& s, int corank, double precision)
       : segment_(segment),
         units_(units),
         s_(s),
         inverse_(s.inverse()),
         corank_(corank),
+        precision_(precision),
         doubt_(kRoundOff * s_.norm() * inverse_.norm()) {}
 
   // The frame at time t, in as many steps of the method as det W needs to be followed. False when
@@ -76,7 +78,7 @@ class Planes {
     double high = t;
     Frame middle;
     constexpr int kBisections = 60;
-    for (int i = 0; i < kBisections && high - low > kPrecision * high; ++i) {
+    for (int i = 0; i < kBisections && high - low > precision_ * high; ++i) {
       const double centre = 0.5 * (low + high);
       if (!advance(a, centre, middle)) break;
       (count(middle) > target + 0.5 ? high : low) = centre;
@@ -107,13 +109,13 @@ class Planes {
 
   static constexpr double kLargestTurn = 0.8;  // of det W in one step; 2 pi more would go unseen
   static constexpr double kRoundOff = 1e-14;   // of a plane, before S magnifies it
-  static constexpr double kPrecision = 1e-13;
 
   const Segment& segment_;
   const Units& units_;
   MatrixXd s_;
   MatrixXd inverse_;
   int corank_;
+  double precision_;
   double doubt_;
 };
 
@@ -200,14 +202,14 @@ ConjugateTimes follow(double fraction,
                       const Units& units,
                       const Knots& knots,
                       long steps,
-                      double doubt) {
+                      const ConjugateTimesOptions& options) {
   const int n = problem.segment.dof;
   ConjugateTimes result;
   const std::optional<Graph> graph = balance_of(fraction, problem, units, knots, steps);
   if (!graph || (graph->kernel > 0 && !units.scaled() && !tells_kernels(knots))) return result;
   result.corank = graph->kernel;
   if (graph->kernel == n) return result;
-  const Planes planes(problem.segment, units, graph->balance, graph->kernel);
+  const Planes planes(problem.segment, units, graph->balance, graph->kernel, options.precision);
   Frame frame = vertical(knots);
   Frame clear = frame;  // the last frame whose count is beyond doubt
   int counted = 0;
@@ -232,9 +234,9 @@ ConjugateTimes follow(double fraction,
     if (!count_to(static_cast<int>(std::lround(planes.count(frame))), frame)) return result;
     clear = frame;
   }
-  if (planes.doubt() > doubt) return result;
-  result.at_end = planes.near_zero(frame, doubt);
-  const double tolerance = result.at_end > 0 ? doubt : 0;
+  if (planes.doubt() > options.doubt) return result;
+  result.at_end = planes.near_zero(frame, options.doubt);
+  const double tolerance = result.at_end > 0 ? options.doubt : 0;
   if (!count_to(static_cast<int>(std::lround(planes.count(frame, tolerance))), frame))
     return result;
   result.times.insert(result.times.end(), result.at_end, problem.time);
@@ -247,16 +249,16 @@ ConjugateTimes follow(double fraction,
 ConjugateTimes conjugate_times(const BoundaryValueProblem& problem,
                                const Knots& knots,
                                long steps,
-                               double doubt) {
+                               const ConjugateTimesOptions& options) {
   // A phase that makes a whole turn within one step goes unseen: two passes, of other steps and
   // another balance, must agree.
   constexpr int kDoublings = 4;
   constexpr std::array kFractions{0.43, 0.31};
   const Units units(problem, knots.at(0) + knots.dof);
-  ConjugateTimes coarse = follow(kFractions[0], problem, units, knots, steps, doubt);
+  ConjugateTimes coarse = follow(kFractions[0], problem, units, knots, steps, options);
   for (int i = 0; i < kDoublings; ++i) {
     steps *= 2;
-    ConjugateTimes fine = follow(kFractions[(i + 1) % 2], problem, units, knots, steps, doubt);
+    ConjugateTimes fine = follow(kFractions[(i + 1) % 2], problem, units, knots, steps, options);
     if (coarse.known && fine.known && coarse.times.size() == fine.times.size() &&
         coarse.corank == fine.corank) {
       return fine;

@@ -29,11 +29,17 @@ struct ConjugateTimes {
   std::optional<int> corank;  // n - the generic rank of X; > 0: abnormal
 };
 
-// Along the extremal through `knots`; `steps` of the method over the whole time. A phase nearer to
-// zero than `doubt` at T counts as zero there: as well as the extremal is known, T is conjugate.
+struct ConjugateTimesOptions {
+  double doubt = 1e-8;  // a phase nearer to zero at T counts as zero: T is conjugate, as well as
+                        // the extremal is known
+  double precision = 1e-13;  // relative, of the times; with 1 they are counted, not located
+};
+
+// Along the extremal through `knots`; `steps` of the method over the whole time. To locate a time
+// costs some forty of them.
 ConjugateTimes conjugate_times(const BoundaryValueProblem& problem,
                                const Knots& knots,
                                long steps,
-                               double doubt = 1e-8);
+                               const ConjugateTimesOptions& options = {});
 
 }  // namespace carnot

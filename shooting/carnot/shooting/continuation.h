@@ -21,9 +21,9 @@ struct ContinuationOptions {
   double first_step = 0.02;  // of arclength, in units of s and of the sizes of p and q
   double largest_step = 0.1;
   double smallest_step = 1e-7;
-  int max_points = 1000;     // in all
-  bool branches = false;     // follow those that start at branch points of the first curve, too
-  bool labels = true;        // conjugate times, Morse index and label of every point
+  int max_points = 1000;  // in all
+  bool branches = false;  // follow those that start at branch points of the first curve, too
+  bool labels = true;     // Morse index and label of every point; conjugate times are not located
   double tolerance = 1e-10;  // largest endpoint error of a verified point
   Progress progress;         // fraction done; returns false to stop
 

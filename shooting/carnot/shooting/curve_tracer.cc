@@ -90,7 +90,7 @@ bool CurveTracer::add(const CurvePoint& point) {
   largest_momentum_ = std::max(largest_momentum_, size);  // p(0) may pass zero
   if (!(moved <= kSameMomentum * largest_momentum_)) return false;
   steps_ = std::max(steps_, extremal->geodesic.plan.count / 2);
-  if (options_.labels) complete(problem, 0, *extremal);
+  if (options_.labels) label(problem, *extremal);
   report_.points.push_back({place.s, branch_, std::move(extremal->geodesic)});
   return true;
 }
