@@ -51,6 +51,9 @@ class Search {
   [[nodiscard]] double least_residual() const { return least_residual_; }
 
  private:
+  static constexpr int kSegments = 8;      // of multiple shooting; divides the intervals of a path
+  static constexpr long kFirstSteps = 32;  // of the method over [0, T]
+
   static constexpr int kNone = -1;
   static constexpr int kPending = -2;
   static constexpr int kTooLong = -3;
@@ -79,6 +82,9 @@ class Search {
   bool descend_round();
   // Energies from that of the shortest extremal to twice that, or to the longest one.
   void sweep_round(int round);
+  // By multiple shooting from the trajectories themselves, those that Newton's method on the grid
+  // did not make discrete extremals of: grids do not see what happens where the frame loses rank.
+  void shoot_near_hits(const std::vector<Path>& paths, const std::vector<Candidate>& candidates);
   // What became of new discrete extremals.
   struct Polished {
     int good = 0;
@@ -96,6 +102,8 @@ class Search {
     std::optional<Extremal> extremal;
     Reason reason = Reason::kNone;
   };
+  // Of extremal `index`, if it is one.
+  void count_hit(int index);
   // The same as below, and remembers how far it came.
   int add(const Outcome& outcome);
   // Adds what is new, and its mirror partners. Returns the index in the list, or -1.

@@ -82,11 +82,13 @@ Path pulled(const BoundaryValueProblem& problem, const std::vector<double>& p, i
   path.dof = n;
   path.q.resize(static_cast<std::size_t>(intervals + 1) * n);
   path.lambda.resize(static_cast<std::size_t>(intervals) * k);
+  path.p.resize(path.q.size());
   for (int i = 0; i <= intervals; ++i) {
     const double share = static_cast<double>(i) / intervals;
     for (int j = 0; j < n; ++j) {
       const double missing = problem.to[j] - knots.at(intervals)[j];
       path.configuration(i)[j] = knots.at(i)[j] + share * missing;
+      path.p[i * n + j] = knots.at(i)[n + j];
     }
   }
   std::copy(problem.to.begin(), problem.to.end(), path.configuration(intervals));

@@ -26,7 +26,8 @@ struct SweepOptions {
   std::vector<double> momentum_scale;  // n standard deviations, up to a common factor
 };
 
-// At most `keep` paths, nearest first; the same whatever the number of threads.
+// At most `keep` paths, nearest first; the same whatever the number of threads. Their momenta are
+// those of the trajectories.
 std::vector<Path> near_hits(const BoundaryValueProblem& problem,
                             const SweepOptions& options,
                             int threads);
