@@ -43,9 +43,9 @@ Eigen::MatrixXd kernel_of(const Units& units, const Eigen::MatrixXd& raw, double
   const Eigen::MatrixXd plane = qr.householderQ() * Eigen::MatrixXd::Identity(2 * n, n);
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(plane.topRows(n), Eigen::ComputeFullV);
   const auto nullity = (svd.singularValues().array() <= tolerance).count();
+  if (nullity == 0) return {n, 0};
   const Eigen::MatrixXd kernel = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>().solve(
       svd.matrixV().rightCols(nullity));
-  if (nullity == 0) return kernel;
   return Eigen::HouseholderQR<Eigen::MatrixXd>(units.momenta(kernel)).householderQ() *
          Eigen::MatrixXd::Identity(n, nullity);
 }
