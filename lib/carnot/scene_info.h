@@ -73,6 +73,8 @@ struct Symmetries {
   int x = -1;
   int y = -1;
   std::vector<int> angles;
+  // Other coordinates that H does not depend on.
+  std::vector<int> cyclic{};
 };
 
 // A number worth reporting of a whole path: the largest |value(q)|.

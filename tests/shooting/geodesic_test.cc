@@ -9,6 +9,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "carnot/shooting/problem_line.h"
 #include "shooting/problems.h"
 
 namespace carnot {
@@ -282,6 +283,33 @@ TEST(Geodesic, TheOriginDoesNotMatter) {
   EXPECT_EQ(there.geodesics[0].trajectory.q.front()[0], x);
   EXPECT_EQ(there.geodesics[0].trajectory.q.back()[1],
             y + here.geodesics[0].trajectory.q.back()[1]);
+}
+
+// Nor do cyclic coordinates: on a scene's axes they cost what they hold of the displacement.
+TEST(Geodesic, CyclicCoordinatesCostNoDigits) {
+  const auto expect_same = [](const BoundaryValueProblem& here) {
+    constexpr double kFar = 1 << 20;  // and the sums are exact
+    const GeodesicReport near = find(here);
+    ASSERT_FALSE(near.geodesics.empty());
+    BoundaryValueProblem there = here;
+    for (const int j : movable(here.segment.info)) {
+      there.from[j] += kFar;
+      there.to[j] += kFar;
+    }
+    const GeodesicReport far = find(there);
+    ASSERT_FALSE(far.geodesics.empty());
+    EXPECT_EQ(far.geodesics[0].p0, near.geodesics[0].p0);
+    EXPECT_EQ(far.geodesics[0].trajectory.q.front(), there.from);
+  };
+  expect_same(test::grushin({0.5, 0}, {0, 0.25}));
+  expect_same(test::martinet({0.5, 0.25, 1}));
+  expect_same(test::engel({0.5, 0.25, 0.125, 1}));
+  expect_same(test::heisenberg_group({0.5, 0, 2}));
+  expect_same(test::satellite({0.5, 0.25, 0.125}));
+  // On the singular line a displacement of 1e-7 beside 1.
+  const GeodesicReport beside = find(test::grushin({0, 1}, {0, 1 + 1e-7}));
+  ASSERT_FALSE(beside.geodesics.empty());
+  EXPECT_NEAR(beside.geodesics[0].action, kPi * (1 + 1e-7 - 1), 1e-9 * 1e-7);
 }
 
 TEST(Geodesic, TimeScalesTheAction) {

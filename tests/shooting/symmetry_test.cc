@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
+#include "carnot/shooting/problem_line.h"
 #include "carnot/shooting/verification.h"
 #include "shooting/problems.h"
 
@@ -31,6 +34,38 @@ void expect_partners(const BoundaryValueProblem& problem,
     const Knots back = partner(problem.segment.info, symmetry, image);
     for (int j = 0; j < extremal->knots.dof; ++j) {  // each is its own inverse
       EXPECT_NEAR(back.p0()[j], extremal->knots.p0()[j], 1e-9);
+    }
+  }
+}
+
+// H does not depend on the coordinates that may be moved, and does on others.
+TEST(Symmetry, MovableCoordinatesLeaveTheHamiltonianAlone) {
+  constexpr double kRoundOff = 1e-14;
+  for (const BoundaryValueProblem& problem : {test::sideways(),
+                                              test::bicycle({0, 1, 0, 0}),
+                                              test::grushin({0, 0}, {0, 1}),
+                                              test::martinet({0, 0, 1}),
+                                              test::engel({0, 0, 0, 1}),
+                                              test::heisenberg_group({0, 0, 1}),
+                                              test::satellite({1, 0, 0})}) {
+    const Segment& segment = problem.segment;
+    const std::vector<int> movable_ones = movable(segment.info);
+    EXPECT_FALSE(movable_ones.empty());
+    std::vector<double> q{0.3, 0.4, 0.2, 0.1};
+    std::vector<double> p{0.7, -0.3, 1.1, 0.4};
+    q.resize(segment.dof);
+    p.resize(segment.dof);
+    std::vector<double> velocity(segment.dof), lambda(segment.multipliers + 1);
+    const auto energy = [&](const std::vector<double>& at) {
+      return segment.evaluate(0, at.data(), p.data(), velocity.data(), lambda.data()).hamiltonian;
+    };
+    for (int j = 0; j < segment.dof; ++j) {
+      std::vector<double> moved = q;
+      moved[j] += 0.37;
+      const bool is_movable =
+          std::find(movable_ones.begin(), movable_ones.end(), j) != movable_ones.end();
+      const double change = std::abs(energy(moved) - energy(q));
+      EXPECT_EQ(change <= kRoundOff * energy(q), is_movable) << segment.info.name << " " << j;
     }
   }
 }

@@ -70,6 +70,7 @@ struct Brockett {
     info.reference = "Brockett, in New Directions in Applied Mathematics, Springer (1982)";
     info.configuration = {{"x", "length", 0}, {"y", "length", 0}, {"z", "length^2", 0}};
     info.symmetries.mirrors = {{-1, -1, 1}, {1, -1, -1}};
+    info.symmetries.cyclic = {2};
     info.drawing.view = Drawing::View::kSpace;
     return info;
   }

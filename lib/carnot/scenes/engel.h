@@ -87,6 +87,7 @@ struct Engel {
     info.configuration = {
         {"x1", "length", 0}, {"x2", "length", 0}, {"x3", "length^2", 0}, {"x4", "length^3", 0}};
     info.symmetries.mirrors = {{-1, 1, -1, 1}, {1, -1, -1, -1}, {-1, -1, 1, -1}};
+    info.symmetries.cyclic = {2, 3};
     info.drawing.view = Drawing::View::kPlane;
     return info;
   }

@@ -89,6 +89,7 @@ struct FallingCat {
     info.reference = "Montgomery, Gauge theory of the falling cat, Fields Inst. Commun. 1 (1993)";
     info.configuration = {{"theta", "rad", kTurn}, {"a", "rad", kTurn}, {"b", "rad", kTurn}};
     info.symmetries.mirrors = {{-1, -1, -1}};
+    info.symmetries.cyclic = {0};
     info.drawing = {Drawing::View::kPlane, {1, 2, 0}, body};
     info.extremes = {{"largest_bend", "rad", [](const double* q) {
                         return std::max(std::abs(q[1]), std::abs(q[2]));

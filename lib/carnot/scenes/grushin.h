@@ -68,6 +68,7 @@ struct Grushin {
         "(2019), ch. 9";
     info.configuration = {{"x", "length", 0}, {"y", "length^2", 0}};
     info.symmetries.mirrors = {{-1, 1}, {1, -1}};
+    info.symmetries.cyclic = {1};
     info.drawing = {Drawing::View::kPlane, {0, 1, 1}, {}};
     return info;
   }

@@ -56,6 +56,7 @@ struct Heisenberg {
     info.reference = "McLachlan, Modin, Verdier & Wilkins, SIAM J. Sci. Comput. 35 (2013), sec. 6";
     info.configuration = {{"x", "length", 0}, {"y", "length", 0}, {"z", "length", 0}};
     info.symmetries.mirrors = {{-1, -1, 1}, {1, -1, -1}};
+    info.symmetries.cyclic = {2};
     info.drawing.view = Drawing::View::kSpace;
     return info;
   }

@@ -80,6 +80,7 @@ struct HeisenbergGroup {
     info.reference = "Montgomery, A Tour of Subriemannian Geometries (2002), ch. 1";
     info.configuration = {{"x", "length", 0}, {"y", "length", 0}, {"z", "length^2", 0}};
     info.symmetries.mirrors = {{-1, -1, 1}, {1, -1, -1}};
+    info.symmetries.cyclic = {2};
     info.drawing.view = Drawing::View::kSpace;
     return info;
   }

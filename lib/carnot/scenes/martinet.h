@@ -73,6 +73,7 @@ struct Martinet {
     info.reference = "Agrachev, Bonnard, Chyba & Kupka, ESAIM: COCV 2 (1997)";
     info.configuration = {{"x", "length", 0}, {"y", "length", 0}, {"z", "length^3", 0}};
     info.symmetries.mirrors = {{1, -1, 1}, {-1, 1, -1}, {-1, -1, -1}};
+    info.symmetries.cyclic = {0, 2};
     info.drawing.view = Drawing::View::kSpace;
     return info;
   }

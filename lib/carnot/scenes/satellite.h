@@ -130,6 +130,7 @@ struct Satellite {
     info.reference = "Boscain & Rossi, SIAM J. Control Optim. 47 (2008)";
     info.configuration = {{"psi", "rad", kTurn}, {"theta", "rad", kTurn}, {"phi", "rad", kTurn}};
     info.symmetries.mirrors = {{-1, 1, -1}, {-1, -1, 1}, {1, -1, -1}};
+    info.symmetries.cyclic = {0};
     // A map of where the body's x axis points: longitude psi and latitude -theta, with its y axis,
     // such as a solar panel, turned by the roll phi.
     info.drawing = {

@@ -22,9 +22,7 @@ constexpr long kFewSteps = 32;  // of the path that does not move
 
 // Moves the answer back.
 void move_to(const BoundaryValueProblem& problem, Geodesic& geodesic) {
-  const Symmetries& symmetries = problem.segment.info.symmetries;
-  for (const int j : {symmetries.x, symmetries.y}) {
-    if (j < 0) continue;
+  for (const int j : movable(problem.segment.info)) {
     for (std::vector<double>& q : geodesic.trajectory.q) q[j] += problem.from[j];
   }
 }

@@ -21,8 +21,10 @@ ProblemLine moving_target(const BoundaryValueProblem& problem, const std::vector
 ProblemLine moving_start(const BoundaryValueProblem& problem, const std::vector<double>& from);
 ProblemLine moving_time(const BoundaryValueProblem& problem, double time);
 
-// Translations of the plane are symmetries of a scene that says so: the same problem with `from` at
-// the origin, where coordinates cost no digits.
+// The coordinates that may be moved: translations along them are symmetries, the scene says.
+std::vector<int> movable(const SceneInfo& info);
+
+// The same problem with those of `from` at zero, where coordinates cost no digits.
 BoundaryValueProblem at_origin(const BoundaryValueProblem& problem);
 
 }  // namespace carnot
