@@ -60,5 +60,18 @@ TEST(AllExtremals, OfTheGrushinPlane) {
   }
 }
 
+// Dilations of the Heisenberg group change nothing but the scale.
+TEST(AllExtremals, DilationsKeepThem) {
+  GeodesicOptions options;
+  options.all = true;
+  for (const double d : {1.0, 1e-2, 1e-3}) {
+    const BoundaryValueProblem problem = test::heisenberg_group({0.5 * d, 0, 2 * d * d});
+    const GeodesicReport report = find_geodesics(problem, options);
+    EXPECT_EQ(report.geodesics.size(), 19U) << d;
+    constexpr double kDigits = 1e-9;
+    EXPECT_NEAR(report.geodesics.at(0).action / (d * d), 10.222137129566029, kDigits) << d;
+  }
+}
+
 }  // namespace
 }  // namespace carnot

@@ -14,6 +14,7 @@
 #include "carnot/shooting/search.h"
 #include "carnot/shooting/starts.h"
 #include "carnot/shooting/sweep.h"
+#include "carnot/shooting/units.h"
 
 namespace carnot {
 namespace {
@@ -89,6 +90,10 @@ void Search::sweep_round(int round) {
   sweep.round = round;
   sweep.intervals = round % 2 == 0 ? 64 : 160;  // the longest wind more often than a grid sees
   sweep.momentum_scale.assign(problem_.segment.dof, 0.0);
+  // Row j: the momentum of coordinate j in the units of the shortest extremal.
+  const Eigen::MatrixXd natural =
+      Units(problem_, extremals_[best()].geodesic.p0.data())
+          .momenta(Eigen::MatrixXd::Identity(problem_.segment.dof, problem_.segment.dof));
   double shortest = std::numeric_limits<double>::infinity();
   double longest = 0;
   double largest = 0;
@@ -99,10 +104,13 @@ void Search::sweep_round(int round) {
     for (std::size_t j = 0; j < geodesic.p0.size(); ++j) {
       const double size = std::abs(geodesic.p0[j]);
       sweep.momentum_scale[j] = std::max(sweep.momentum_scale[j], size);
-      largest = std::max(largest, size);
+      largest = std::max(largest, size / natural.row(j).norm());
     }
   }
-  for (double& scale : sweep.momentum_scale) scale = std::max(scale, 0.3 * largest);
+  for (int j = 0; j < problem_.segment.dof; ++j) {
+    double& scale = sweep.momentum_scale[j];
+    scale = std::max(scale, 0.3 * largest * natural.row(j).norm());
+  }
   longest = std::min(std::max(longest, std::sqrt(2.0) * shortest), options_.max_length);
   const auto energy = [&](double length) {
     const double speed = length / problem_.time;

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <random>
 
 #include "carnot/parallel.h"
+#include "carnot/shooting/dilation.h"
 #include "carnot/shooting/end_point.h"
 #include "carnot/shooting/knots.h"
 
@@ -47,6 +49,35 @@ std::vector<double> draw(const BoundaryValueProblem& problem, const SweepOptions
   return draw_momentum(problem, options, random);
 }
 
+// How far an end is from the target. Where that is near, coordinates of all weights count alike, as
+// they do not by themselves.
+class Miss {
+ public:
+  explicit Miss(const BoundaryValueProblem& problem) : problem_(problem) {
+    constexpr double kNear = 0.1;  // gauge
+    dilation_ = Dilation::at_start(problem);
+    if (!dilation_) return;
+    to_ = dilation_->coordinates(problem.to.data());
+    const double gauge = dilation_->gauge(to_);
+    if (gauge > 0 && gauge < kNear) {
+      unit_ = 1 / gauge;
+    } else {
+      dilation_.reset();
+    }
+  }
+
+  [[nodiscard]] double of(const double* q) const {
+    if (!dilation_) return largest_difference(q, problem_.to.data(), problem_.segment.dof);
+    return dilation_->scaled(dilation_->coordinates(q) - to_, unit_).cwiseAbs().maxCoeff();
+  }
+
+ private:
+  const BoundaryValueProblem& problem_;
+  std::optional<Dilation> dilation_;
+  Eigen::VectorXd to_;
+  double unit_ = 1;
+};
+
 // Runs all of them at once and sets `miss`: infinite where the flow fails.
 void run(const BoundaryValueProblem& problem, int threads, std::vector<Draw>& draws) {
   constexpr double kTolerance = 1e-4;  // only the order of the misses counts
@@ -64,9 +95,9 @@ void run(const BoundaryValueProblem& problem, int threads, std::vector<Draw>& dr
              ? segment.adaptive_batch(0, problem.time, kTolerance, count, z.data(), threads)
              : segment.flow_batch(
                    StepPlan::equal(0, problem.time, kSteps), count, z.data(), threads));
+  const Miss target(problem);
   for (int i = 0; i < count; ++i) {
-    const double miss =
-        largest_difference(&z[static_cast<std::size_t>(i) * 2 * n], problem.to.data(), n);
+    const double miss = target.of(&z[static_cast<std::size_t>(i) * 2 * n]);
     if (std::isfinite(miss)) draws[i].miss = miss;
   }
 }
