@@ -48,7 +48,7 @@ class Descent {
         equations_.metric_product(saddle, w, bw);
         std::vector<double> next = bw;
         matrix_.substitute(next);
-        clear_multipliers(next);
+        clear(next, true);
         const double overlap = dot(next, bw);
         const double size = length(saddle, next);
         curvature = overlap / (size * size) - shift;
@@ -125,9 +125,10 @@ class Descent {
   }
 
  private:
-  void clear_multipliers(std::vector<double>& x) const {
+  // Sets the multipliers, or the nodes, to zero.
+  void clear(std::vector<double>& x, bool multipliers) const {
     for (int j = 0; j < equations_.size(); ++j) {
-      if (equations_.is_multiplier(j)) x[j] = 0;
+      if (equations_.is_multiplier(j) == multipliers) x[j] = 0;
     }
   }
   // Those by which the constraints balance the slope of the action, as far as they can, in B.
@@ -136,9 +137,7 @@ class Descent {
     std::vector<double> direction;
     equations_.evaluate(path, direction, &matrix_, {0, 1});
     if (!matrix_.solve(direction)) return;
-    for (int j = 0; j < equations_.size(); ++j) {
-      if (!equations_.is_multiplier(j)) direction[j] = 0;
-    }
+    clear(direction, false);
     equations_.move(path, direction, 1, path);
   }
   // In the metric B at `path`.
@@ -171,11 +170,9 @@ class Descent {
     for (int i = 0; i < kMaxIterations; ++i) {
       if (walled_ && !in_one_chart(problem_.segment, bare)) return false;
       equations_.evaluate(bare, direction, &matrix_, {0, 1});
-      for (int j = 0; j < equations_.size(); ++j) {
-        if (!equations_.is_multiplier(j)) direction[j] = 0;
-      }
+      clear(direction, false);
       if (!matrix_.solve(direction)) return false;
-      clear_multipliers(direction);
+      clear(direction, true);
       const double size = length(bare, direction);
       if (!(size < extent_)) return false;
       equations_.move(bare, direction, 1, bare);
