@@ -131,14 +131,14 @@ std::optional<Extremal> verify(const BoundaryValueProblem& problem,
     extremal.knots = knots;
     geodesic.verification = Verification::kKnots;
     geodesic.knot_defect = knot_defect(problem, knots, tighter);
-    if (geodesic.knot_defect <= tolerance && !magnifies(problem, knots, steps, tolerance)) {
+    if (geodesic.knot_defect <= allowed && !magnifies(problem, knots, steps, tolerance)) {
       why = Reason::kNotVerified;
       return std::nullopt;
     }
-    if (!(geodesic.knot_defect <= tolerance)) {
-      why = std::isinf(geodesic.knot_defect)                ? Reason::kFlowFailed
-            : tolerance < round_off(extremal.knots, growth) ? Reason::kBeyondDouble
-                                                            : Reason::kNotVerified;
+    if (!(geodesic.knot_defect <= allowed)) {
+      why = std::isinf(geodesic.knot_defect)              ? Reason::kFlowFailed
+            : allowed < round_off(extremal.knots, growth) ? Reason::kBeyondDouble
+                                                          : Reason::kNotVerified;
       return std::nullopt;
     }
   }
