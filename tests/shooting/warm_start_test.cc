@@ -46,7 +46,7 @@ TEST_P(WarmStartTest, ReachesTargetsNearby) {
     for (const std::vector<double>& to : targets_around(problem.to, away)) {
       const WarmStartReport report = start.solve(to.data(), p0.data());
       ASSERT_TRUE(report.converged) << away << ' ' << report.endpoint_error;
-      EXPECT_LE(report.flows, 8);
+      EXPECT_LE(report.flows, away < farthest ? 8 : 12);
       // The same branch, and an end that another integration confirms.
       double moved = 0;
       for (std::size_t j = 0; j < n; ++j) moved = std::max(moved, std::abs(p0[j] - near.p0[j]));
@@ -63,7 +63,7 @@ TEST_P(WarmStartTest, ReachesTargetsNearby) {
 // Parking is the least linear: |dq(T)/dp0|^-1 is about 100.
 INSTANTIATE_TEST_SUITE_P(Scenes,
                          WarmStartTest,
-                         ::testing::Values(std::pair(test::sideways(), 1e-3),
+                         ::testing::Values(std::pair(test::sideways(), 1e-2),
                                            std::pair(test::vehicle({0, 0, 0, 0}, {2, 1, 0.5, 0.5}),
                                                      1e-2),
                                            std::pair(test::unicycle({0, 0, 0}, {1, 1, 1}), 1e-2),

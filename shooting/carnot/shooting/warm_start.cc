@@ -1,6 +1,5 @@
 #include "carnot/shooting/warm_start.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -32,130 +31,99 @@ void update(const Vector& step, const Vector& change, Matrix& inverse) {
   inverse += ((step - image) / weight).lazyProduct(row.transpose());
 }
 
+// p0, if the arguments of the constructor are what it asks for.
+EndPointModel::Vector checked(const BoundaryValueProblem& problem,
+                              const std::vector<double>& p0,
+                              double tolerance) {
+  constexpr int kMost = EndPointModel::kMostDof;
+  problem.validate();
+  const int n = problem.segment.dof;
+  if (static_cast<int>(p0.size()) != n || n > kMost) {
+    throw std::invalid_argument("p0 has " + std::to_string(p0.size()) +
+                                " components, the scene has " + std::to_string(n) + ", at most " +
+                                std::to_string(kMost));
+  }
+  if (!(tolerance > 0 && std::isfinite(tolerance))) {
+    throw std::invalid_argument("tolerance is " + std::to_string(tolerance) + ", must be > 0");
+  }
+  return Eigen::Map<const EndPointModel::Vector>(p0.data(), n);
+}
+
 }  // namespace
 
 WarmStart::WarmStart(const BoundaryValueProblem& problem,
                      const std::vector<double>& p0,
                      double tolerance)
-    : problem_(problem), tolerance_(tolerance) {
-  problem.validate();
-  const int n = problem.segment.dof;
-  if (static_cast<int>(p0.size()) != n || n > kMostDof) {
-    throw std::invalid_argument("p0 has " + std::to_string(p0.size()) +
-                                " components, the scene has " + std::to_string(n) + ", at most " +
-                                std::to_string(kMostDof));
-  }
-  if (!(tolerance > 0 && std::isfinite(tolerance))) {
-    throw std::invalid_argument("tolerance is " + std::to_string(tolerance) + ", must be > 0");
-  }
+    : problem_(problem),
+      tolerance_(tolerance),
+      roughness_(0.1 * std::sqrt(tolerance)),
+      p0_(checked(problem, p0, tolerance)),
+      model_(problem, p0_) {
   constexpr double kFine = 0.1;
   constexpr double kStricter = 0.01;
   constexpr double kArrives = 1e-6;
-  p0_ = Eigen::Map<const Eigen::VectorXd>(p0.data(), n);
-  if (!differentiate()) return;
+  if (!model_.invertible()) return;
   std::vector<double> start = problem.from;
   start.insert(start.end(), p0.begin(), p0.end());
+  rough_ = plan_for(problem, start, roughness_);
   plan_ = plan_for(problem, start, kFine * tolerance);
   check_ = StepPlan::equal(0, problem.time, 2 * plan_.count);
   check_.stop = kStricter * plan_.stop;
-  ready_ =
-      end_of(plan_, p0_, end_) && largest_difference(end_.data(), problem.to.data(), n) <= kArrives;
+  ready_ = end_of(plan_, p0_, end_) &&
+           largest_difference(end_.data(), problem.to.data(), problem.segment.dof) <= kArrives;
 }
 
-bool WarmStart::differentiate() {
-  constexpr double kSingular = 1e-11;
-  constexpr double kAside = 1e-4;  // of p0, for differences
-  const auto tangent_at = [&](Eigen::Index j, double aside) {
-    std::vector<double> p0(p0_.data(), p0_.data() + p0_.size());
-    p0[j] += aside;
-    std::vector<double> z;
-    return end_point_tangent(problem_, p0, problem_.time, kSteps, z);
-  };
-  const auto tangent = tangent_at(0, 0);
-  if (!tangent) return false;
-  jacobian_ = tangent->topRows(p0_.size());
-  Eigen::FullPivLU<SmallMatrix> lu(jacobian_);
-  lu.setThreshold(kSingular);
-  if (!lu.isInvertible()) return false;
-  inverse_ = lu.inverse();
-  const double aside = kAside * p0_.cwiseAbs().maxCoeff();
-  for (Eigen::Index j = 0; j < p0_.size(); ++j) {
-    const auto after = tangent_at(j, aside);
-    const auto before = tangent_at(j, -aside);
-    if (!after || !before) return false;
-    bend_.emplace_back((after->topRows(p0_.size()) - before->topRows(p0_.size())) / (2 * aside));
-  }
-  return true;
-}
-
-void WarmStart::predict(const Small& change_of_end, Small& change, SmallMatrix& inverse) const {
-  constexpr int kMostIterations = 8;
-  constexpr double kClose = 1e-3;  // of the change: the model is no better
-  change = inverse_.lazyProduct(change_of_end);
-  inverse = inverse_;
-  Small trial = change;
-  for (int i = 0; i < kMostIterations; ++i) {
-    // q(T) changes by (J + B/2) change with B = sum_j change_j dJ/dp_j; its derivative is J + B.
-    SmallMatrix bend = SmallMatrix::Zero(trial.size(), trial.size());
-    for (Eigen::Index j = 0; j < trial.size(); ++j) bend += trial[j] * bend_[j];
-    const SmallMatrix middle = jacobian_ + 0.5 * bend;
-    const Eigen::PartialPivLU<SmallMatrix> lu(jacobian_ + bend);
-    const Small step = lu.solve(middle.lazyProduct(trial) - change_of_end);
-    if (!(step.norm() <= trial.norm())) return;
-    trial -= step;
-    if (step.norm() > kClose * trial.norm()) continue;
-    change = trial;
-    inverse = lu.inverse();
-    return;
-  }
-}
-
-bool WarmStart::end_of(const StepPlan& plan, const Small& p0, Small& q) const {
+bool WarmStart::end_of(const StepPlan& plan, const Vector& p0, Vector& q) const {
   const int n = problem_.segment.dof;
-  std::array<double, 2 * kMostDof> z{};
+  std::array<double, 2 * EndPointModel::kMostDof> z{};
   std::copy(problem_.from.begin(), problem_.from.end(), z.begin());
   std::copy(p0.data(), p0.data() + n, z.begin() + n);
   if (!problem_.segment.flow(plan, z.data()).completed()) return false;
-  q = Eigen::Map<const Small>(z.data(), n);
+  q = Eigen::Map<const Vector>(z.data(), n);
   return q.allFinite();
 }
 
 WarmStartReport WarmStart::solve(const double* to, double* p0) const {
-  constexpr int kMostFlows = 12;
+  constexpr int kMostFlows = 16;
   constexpr double kAim = 0.3;  // of the tolerance
-  constexpr double kGrows = 2;
+  constexpr double kFar = 30;   // times the roughness: a rough flow is good enough
   const int n = problem_.segment.dof;
   std::copy(p0_.data(), p0_.data() + n, p0);
   WarmStartReport report;
   if (!ready_) return report;
-  const Eigen::Map<const Small> target(to, n);
-  Small p = p0_;
-  Small end;
-  Small residual = end_ - target;
-  Small step;
-  SmallMatrix inverse;
-  predict(-residual, step, inverse);
-  double size = residual.cwiseAbs().maxCoeff();
-  const double largest = std::max(kGrows * size, tolerance_);
-  double expected = size;  // after the next step
+  const Eigen::Map<const Vector> target(to, n);
+  Vector p = p0_;
+  Vector residual = end_ - target;
+  double error = residual.cwiseAbs().maxCoeff();
+  auto [step, inverse, expected] = model_.move_end(-residual);
+  Vector end = end_;
   while (report.flows < kMostFlows) {
-    const bool arrived = size <= kAim * tolerance_;
+    const bool arrived = error <= kAim * tolerance_;
     const bool last = arrived || expected <= kAim * tolerance_;
-    if (report.flows > 0) step = -inverse.lazyProduct(residual);
+    const bool rough = expected > kFar * roughness_;
     if (arrived) step.setZero();
-    p += step;
     ++report.flows;
-    if (!end_of(last ? check_ : plan_, p, end)) return report;
-    const Small change = end - target - residual;
-    residual = end - target;
-    const double now = residual.cwiseAbs().maxCoeff();
-    if (last) report.endpoint_error = now;
-    report.converged = last && now <= tolerance_;
-    if (report.converged || !(now <= largest)) break;
+    if (!end_of(last ? check_ : rough ? rough_ : plan_, p + step, end)) {
+      step /= 2;
+      continue;
+    }
+    const Vector now = end - target;
+    const double size = now.cwiseAbs().maxCoeff();
+    if (last) report.endpoint_error = size;
+    report.converged = last && size <= tolerance_;
     // The model's Jacobian is that of the end of its step.
-    if (report.flows > 1 && !arrived) update(step, change, inverse);
-    expected = std::min(now, now * now / size);
-    size = now;
+    if (report.flows > 1 && !arrived) update(step, Vector(now - residual), inverse);
+    if (size > error && !arrived && !report.converged) {
+      step /= 2;
+      continue;
+    }
+    p += step;
+    if (report.converged) break;
+    residual = now;
+    step = -inverse.lazyProduct(residual);
+    const double resolved = rough ? roughness_ : 0;
+    expected = std::max(resolved, std::min(size, size * size / error));
+    error = std::max(resolved, size);
   }
   if (report.converged) std::copy(p.data(), p.data() + n, p0);
   return report;
