@@ -5,6 +5,7 @@
 
 #include "carnot/shooting/conjugate_times.h"
 #include "carnot/shooting/end_point.h"
+#include "carnot/shooting/path.h"
 #include "carnot/shooting/survey.h"
 
 namespace carnot {
@@ -81,10 +82,22 @@ std::optional<int> family_dimension(const BoundaryValueProblem& problem,
 
 namespace {
 
+// Whether the path passes a singularity of the coordinates, as some do that move only one of them.
+// The tangent flow has a pole there, which numbers beyond it do not show.
+bool passes_singularity(const BoundaryValueProblem& problem, const Extremal& extremal) {
+  if (problem.segment.calls.chart == nullptr) return false;
+  const long steps = extremal.geodesic.plan.count;
+  const Trajectory path = survey(problem, extremal.knots, steps, steps + 1).trajectory;
+  const auto parted = [&](const std::vector<double>& a, const std::vector<double>& b) {
+    return !same_chart(problem.segment, a.data(), b.data());
+  };
+  return std::adjacent_find(path.q.begin(), path.q.end(), parted) != path.q.end();
+}
+
 ConjugateTimes conjugate_times_along(const BoundaryValueProblem& problem,
                                      const Extremal& extremal,
                                      ConjugateTimesOptions options) {
-  if (problem.segment.holonomic > 0) return {};
+  if (problem.segment.holonomic > 0 || passes_singularity(problem, extremal)) return {};
   options.doubt = doubt_of(problem, extremal.geodesic);
   const long steps = extremal.geodesic.plan.count / 2;
   return conjugate_times(problem, extremal.knots, steps, options);
