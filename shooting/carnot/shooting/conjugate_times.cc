@@ -42,7 +42,7 @@ class Planes {
 
   // The frame at time t, in as many steps of the method as det W needs to be followed. False when
   // a step fails or W turns too fast.
-  [[nodiscard]] bool advance(const Frame& from, double t, Frame& to, int halvings = 10) const {
+  [[nodiscard]] bool advance(const Frame& from, double t, Frame& to, int halvings = 30) const {
     if (!step(from, t, to)) return false;
     if (std::abs(to.phi - from.phi) < kLargestTurn) return true;
     Frame middle;
