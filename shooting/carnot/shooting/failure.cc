@@ -95,13 +95,18 @@ std::string effort(const BoundaryValueProblem& problem, const Search& search) {
   return tried;
 }
 
+// Whether the coordinates stand in the way, and what helps then.
+bool in_the_way(const BoundaryValueProblem& problem, const Search& search) {
+  return parted(problem) || 2 * search.blocked() > search.starts();
+}
+constexpr const char* kOtherCoordinates =
+    "try more --starts, ends further from it, or other coordinates, such as a unit quaternion";
+
 Failure no_discrete(const BoundaryValueProblem& problem, const Search& search) {
   const std::string none = "no path relaxed to a discrete extremal (" + effort(problem, search);
-  if (parted(problem) || 2 * search.blocked() > search.starts()) {
+  if (in_the_way(problem, search)) {
     return {Reason::kSingularCoordinates,
-            none +
-                "): there may be no geodesic that keeps clear of it; try more --starts, ends "
-                "further from it, or other coordinates"};
+            none + "): there may be no geodesic that keeps clear of it; " + kOtherCoordinates};
   }
   std::ostringstream residual;
   residual.precision(2);
@@ -144,7 +149,10 @@ Failure explain_failure(const BoundaryValueProblem& problem,
   const Reason reason = beyond ? Reason::kBeyondDouble : search.furthest();
   return {reason,
           fate(reason) + " (" + tried + "; of the one of least action, " + end.text +
-              regularity(problem) + "): try a larger --tolerance, more --starts or another --seed"};
+              regularity(problem) + "): " +
+              (in_the_way(problem, search)
+                   ? kOtherCoordinates
+                   : "try a larger --tolerance, more --starts or another --seed")};
 }
 
 }  // namespace carnot
