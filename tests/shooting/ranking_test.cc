@@ -22,6 +22,13 @@ TEST(Ranking, ByActionThenByMomentum) {
   EXPECT_EQ(list[2].geodesic.action, 2);
 }
 
+TEST(Ranking, KnotsComeLastAmongEquals) {
+  std::vector<Extremal> list{extremal(1, -3), extremal(1 + 1e-13, 3)};
+  list[0].geodesic.verification = Verification::kKnots;
+  rank(list);
+  EXPECT_EQ(list[0].geodesic.p0[0], 3);
+}
+
 TEST(MissedEstimate, IsThatOfChao) {
   EXPECT_EQ(missed_estimate({}), 0);
   EXPECT_EQ(missed_estimate({7, 3, 5}), 0);

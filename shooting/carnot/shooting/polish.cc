@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "carnot/shooting/end_point.h"
 #include "carnot/shooting/multiple_shooting.h"
 #include "carnot/shooting/refinement.h"
 
@@ -53,6 +54,25 @@ std::optional<Extremal> join(const BoundaryValueProblem& problem,
 
 }  // namespace
 
+std::optional<Extremal> shoot_along(const BoundaryValueProblem& problem,
+                                    const GeodesicOptions& options,
+                                    const Path& path) {
+  constexpr double kPart = 1e-6;  // of the distance; near enough to be verified
+  const int n = path.dof;
+  const double h = problem.time / path.intervals;
+  std::vector<double> velocity(n);
+  for (int j = 0; j < n; ++j) {
+    velocity[j] = (path.configuration(1)[j] - path.configuration(0)[j]) / h;
+  }
+  std::vector<double> p0(n);
+  const std::vector<double> lambda(problem.segment.multipliers + 1, 0.0);
+  problem.segment.momentum(0, problem.from.data(), velocity.data(), lambda.data(), p0.data());
+  const double distance = largest_difference(problem.from.data(), problem.to.data(), n);
+  Eigen::MatrixXd tangent;
+  if (!(correct(problem, kFewSteps, 0, p0, tangent) <= kPart * distance)) return std::nullopt;
+  return verify(problem, knots_of(problem, p0, 1, kFewSteps), 2 * kFewSteps, options.tolerance);
+}
+
 std::optional<Extremal> polish(const BoundaryValueProblem& problem,
                                const GeodesicOptions& options,
                                const Path& path,
@@ -70,6 +90,11 @@ std::optional<Extremal> polish(const BoundaryValueProblem& problem,
     extremal = join(problem, options, refined, patience, furthest);
     if (extremal || !refined.settled) break;
     refinement.enough = 0.2 * refined.change;
+  }
+  // With large multipliers knots may join what needs none.
+  if (!extremal || extremal->geodesic.verification == Verification::kKnots) {
+    auto along = shoot_along(problem, options, path);
+    if (along && (!extremal || same(*along, *extremal))) extremal = std::move(along);
   }
   if (!extremal && reason != nullptr) *reason = furthest;
   return extremal;

@@ -11,8 +11,8 @@
 namespace carnot {
 
 // Refines the path (refinement.h) and joins the knots on it (multiple_shooting.h): as many of them,
-// and as many steps, as the tangent flow asks for. Nothing when no extremal is near: `reason` says
-// how far it came.
+// and as many steps, as the tangent flow asks for; where that fails, shoots along it. Nothing when
+// no extremal is near: `reason` says how far it came.
 std::optional<Extremal> polish(const BoundaryValueProblem& problem,
                                const GeodesicOptions& options,
                                const Path& path,
@@ -23,5 +23,12 @@ std::optional<Extremal> polish(const BoundaryValueProblem& problem,
                                const GeodesicOptions& options,
                                const Knots& knots,
                                Reason* reason = nullptr);
+
+// By single shooting from the velocity at the start, without multipliers. Where a path is abnormal
+// as well as normal, a grid that only nearly satisfies the constraints along it has large ones,
+// which lead nowhere, or no discrete extremal at all. Cost: a few tangent flows.
+std::optional<Extremal> shoot_along(const BoundaryValueProblem& problem,
+                                    const GeodesicOptions& options,
+                                    const Path& path);
 
 }  // namespace carnot

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace carnot {
 
@@ -15,7 +16,10 @@ void rank(std::vector<Extremal>& list) {
       return extremal.geodesic.action - action > kSameAction * std::abs(action);
     });
     std::sort(first, last, [](const Extremal& a, const Extremal& b) {
-      return a.geodesic.p0 < b.geodesic.p0;
+      const auto key = [](const Geodesic& g) {
+        return std::tie(g.verification, g.p0);  // kSingle is first
+      };
+      return key(a.geodesic) < key(b.geodesic);
     });
     first = last;
   }

@@ -10,7 +10,8 @@ namespace carnot {
 // Equal actions, as of mirror partners, differ by less than this, relative.
 inline constexpr double kSameAction = 1e-9;
 
-// Least action first; equal ones in the order of p0, not of round-off.
+// Least action first; equal ones in the order of p0, not of round-off, and those that need knots
+// last.
 void rank(std::vector<Extremal>& list);
 
 // How many distinct extremals, up to symmetry, the starts have missed, by how often those found

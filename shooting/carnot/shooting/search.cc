@@ -216,6 +216,10 @@ int Search::add(const std::optional<Extremal>& extremal, int partner_of) {
   if (!extremal) return kNone;
   for (std::size_t i = 0; i < extremals_.size(); ++i) {
     if (same(extremals_[i], *extremal) || same_family(extremals_[i], *extremal)) {
+      // The same path by momenta that need no knots.
+      const bool simpler = extremals_[i].geodesic.verification == Verification::kKnots &&
+                           extremal->geodesic.verification == Verification::kSingle;
+      if (simpler) extremals_[i] = *extremal;
       return static_cast<int>(i);
     }
   }

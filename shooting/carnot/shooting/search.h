@@ -58,9 +58,10 @@ class Search {
   static constexpr int kPending = -2;
   static constexpr int kTooLong = -3;
 
-  // A relaxed path that satisfies the discrete equations.
+  // A relaxed path.
   struct Candidate {
-    bool found = false;
+    bool found = false;    // it satisfies the discrete equations
+    bool relaxed = false;  // or it joins the ends of the problem and nearly does
     bool blocked = false;  // the coordinates end where it went
     int stiffness = 0;     // how often the penalty had to be raised
     double residual = std::numeric_limits<double>::infinity();  // relative to the momenta
@@ -78,6 +79,9 @@ class Search {
   void relax_round(int count);
   // The same from momenta, where there is no transcription.
   void momentum_round(int count);
+  // From the path of least action, of those that Newton's method on the grid did not make discrete
+  // extremals of.
+  void shoot_along_relaxed(const std::vector<Candidate>& candidates);
   // Goes down from the best extremal, which is no minimum. False where that gives nothing better.
   bool descend_round();
   // Energies from that of the shortest extremal to twice that, or to the longest one.

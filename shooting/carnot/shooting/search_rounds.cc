@@ -36,6 +36,7 @@ void Search::relax_round(int count) {
   parallel_for(count, threads_, [&](int i) { candidates[i] = relax_start(drawn_ + i); });
   drawn_ += count;
   const Polished polished = absorb(candidates);
+  shoot_along_relaxed(candidates);
   const bool artefacts = polished.failed >= kArtefacts && polished.failed > polished.good;
   int stiffer = 0;
   int found = 0;
@@ -45,6 +46,20 @@ void Search::relax_round(int count) {
   }
   if (2 * stiffer > found && stiffness_ < kMaxStiffness) ++stiffness_;
   if (artefacts) intervals_ = std::min(2 * intervals_, kMaxIntervals);
+}
+
+void Search::shoot_along_relaxed(const std::vector<Candidate>& candidates) {
+  const Path* least = nullptr;
+  double least_action = std::numeric_limits<double>::infinity();
+  for (const Candidate& candidate : candidates) {
+    if (candidate.found || !candidate.relaxed) continue;
+    const double h = problem_.time / candidate.path.intervals;
+    const double action = discrete_action(problem_.segment, h, candidate.path);
+    if (!(action < least_action)) continue;
+    least = &candidate.path;
+    least_action = action;
+  }
+  if (least != nullptr) count_hit(add(shoot_along(problem_, options_, *least)));
 }
 
 bool Search::descend_round() {
@@ -160,10 +175,13 @@ Search::Candidate Search::relax_start(int i) const {
     candidate.path = start.path;
     const double violation = relax(easy, relaxation, candidate.path).violation;
     if (!(violation < kCollapsed)) continue;
-    const DiscreteNewton tightened = tighten(easy, {}, candidate.path);
-    candidate.blocked = tightened.left_chart || skims_chart_end(easy.segment, candidate.path);
+    Path path = candidate.path;
+    const DiscreteNewton tightened = tighten(easy, {}, path);
+    candidate.blocked = tightened.left_chart || skims_chart_end(easy.segment, path);
     candidate.found = tightened.converged && !candidate.blocked;
-    candidate.residual = tightened.residual / largest_momentum(candidate.path);
+    candidate.relaxed = !candidate.blocked && !near_;
+    candidate.residual = tightened.residual / largest_momentum(path);
+    if (candidate.found) candidate.path = std::move(path);
     if (candidate.found || violation < kHeld || candidate.stiffness > 0) break;
   }
   if (candidate.found && near_) candidate.found = near_->shrink(way, candidate.path);

@@ -114,8 +114,8 @@ std::optional<Extremal> verify(const BoundaryValueProblem& problem,
     // Holonomic constraints: p along the rows of Dh moves nothing.
     reduce(problem, steps, aim, p0, tangent);
     extremal.singular =
-        kernel_of(Units(problem, p0.data()), tangent).cols() > problem.segment.holonomic;
-    if (problem.segment.holonomic > 0) project(problem, p0);
+        kernel_of(Units(problem, p0.data()), tangent).cols() > problem.segment.forced;
+    if (problem.segment.forced > 0) project(problem, p0);
     extremal.knots = knots_of(problem, p0, 1, tighter);
     error = largest_difference(extremal.knots.at(1), problem.to.data(), problem.segment.dof);
   }
@@ -166,16 +166,20 @@ std::optional<Extremal> verify(const BoundaryValueProblem& problem,
 
 bool same(const Extremal& a, const Extremal& b) {
   constexpr double kSame = 1e-6;
+  constexpr double kHardly = 1e-4;  // of the largest extent
   const std::size_t n = a.path.front().size();
+  std::vector<double> extent(n, 0.0);
+  std::vector<double> apart(n, 0.0);
   for (std::size_t j = 0; j < n; ++j) {
-    double extent = 0;
-    double apart = 0;
     for (std::size_t i = 0; i < a.path.size(); ++i) {
-      extent = std::max(extent, std::abs(a.path[i][j] - a.path[0][j]));
-      apart = std::max(apart, std::abs(a.path[i][j] - b.path[i][j]));
+      extent[j] = std::max(extent[j], std::abs(a.path[i][j] - a.path[0][j]));
+      apart[j] = std::max(apart[j], std::abs(a.path[i][j] - b.path[i][j]));
     }
-    // A coordinate that hardly moves has no scale of its own.
-    if (apart > kSame * std::max(extent, kSame)) return false;
+  }
+  // A coordinate that hardly moves has no scale of its own.
+  const double least = std::max(kSame, kHardly * *std::max_element(extent.begin(), extent.end()));
+  for (std::size_t j = 0; j < n; ++j) {
+    if (apart[j] > kSame * std::max(extent[j], least)) return false;
   }
   return true;
 }
