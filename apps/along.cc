@@ -48,6 +48,9 @@ Along parse_along(const std::string& text, const Run& run, const Ends& ends) {
     along.kind = along.name == "to" ? Along::Kind::kTarget : Along::Kind::kStart;
     along.start = along.name == "to" ? ends.to : ends.from;
     along.end = parse_vector(option, value, coordinate_names(*run.entry));
+    if (run.segment.holonomic > 0) {
+      refuse(option, value, "the way there leaves the holonomic constraints", "another --along");
+    }
     check_end(option, value, run.segment, along.end);
   } else if (along.name == "time") {
     along.kind = Along::Kind::kTime;

@@ -69,7 +69,7 @@ bool on_manifold(const Segment& segment, PhaseStart& start) {
 }
 
 const char* accurate_method(const SceneEntry& entry) {
-  return entry.holonomic > 0 ? "rattle6" : "gauss16";
+  return entry.needs_rattle ? "rattle6" : "gauss16";
 }
 
 }  // namespace

@@ -56,10 +56,10 @@ ContinueRequest check(const Options& options) {
   if (options.from.empty()) refuse_missing("--from", vector_accepted(names));
   if (options.to.empty()) refuse_missing("--to", vector_accepted(names));
   if (options.along.empty()) refuse_missing("--along", "to=Q1, from=Q0, time=T or PARAMETER=VALUE");
-  if (entry.holonomic > 0) {
+  if (request.run.segment.forced > 0) {
     refuse("SCENE",
            entry.info.name,
-           "continuation is not offered with holonomic constraints",
+           "continuation is not offered with holonomic constraints that need RATTLE",
            "a scene without them");
   }
   request.ends.from = parse_vector("--from", options.from, names);

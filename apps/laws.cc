@@ -198,7 +198,7 @@ double measure_symplecticity(const Segment& segment,
   const StepPlan plan = StepPlan::equal(start.t, step * static_cast<double>(steps), steps);
   const TangentMap map = tangent_along(segment, plan, start.z, Progress());
   if (map.status != FlowStatus::kCompleted) return kNotMeasured;
-  if (segment.holonomic == 0) return map.relative_defect;
+  if (segment.forced == 0) return map.relative_defect;
   Square p(2 * n, 2 * n);  // symmetric
   if (!segment.tangent_projector(start.t, start.z.data(), p.data())) return kNotMeasured;
   const auto form = [n](const Square& a) {  // a'J a

@@ -29,6 +29,7 @@ SceneEntry make_entry() {
   entry.dof = Scene::kDof;
   entry.multipliers = decltype(make_system(scene))::kMultipliers;
   if constexpr (HasHolonomic<Scene>) entry.holonomic = Scene::kHolonomic;
+  entry.needs_rattle = kNeedsRattle<Scene>;
   entry.suits = carnot::suits<Scene>;
   if constexpr (HasParameters<Scene>) {
     for (const auto& parameter : Scene::parameters()) {

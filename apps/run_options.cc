@@ -49,7 +49,7 @@ void add_model_options(CLI::App& app, RunOptions& options) {
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   app.add_option(
-         "--method", options.method, "a name from `carnot methods` (gauss16; rattle with h(q) = 0)")
+         "--method", options.method, "a name from `carnot methods` (gauss16; rattle where h(q) = 0 needs it)")
       ->type_name("NAME");
 }
 

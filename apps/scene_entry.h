@@ -33,6 +33,7 @@ struct SceneEntry {
   int dof = 0;
   int multipliers = 0;
   int holonomic = 0;
+  bool needs_rattle = false;  // the holonomic constraints do
   std::vector<ParameterInfo> parameters;
   // Whether a method can integrate the scene.
   bool (*suits)(const Method&) = nullptr;

@@ -44,7 +44,7 @@ TangentMap tangent_along(const Segment& segment,
   const Square j = structure_matrix(n);
   map.m.assign(m.data(), m.data() + m.size());
   Square defect = m.transpose() * j * m - j;
-  if (segment.holonomic > 0) {
+  if (segment.forced > 0) {
     Square projector(2 * n, 2 * n);
     if (!segment.tangent_projector(plan.start, start.data(), projector.data())) {
       map.status = FlowStatus::kStepFailed;

@@ -268,10 +268,13 @@ Segment bind(const Scene& scene, const Method& method, B bound) {
   if constexpr (HasBranches<System>) segment.calls.branch = branch<B>;
   if constexpr (HasHolonomic<Scene>) {
     segment.holonomic = Scene::kHolonomic;
+    segment.forced = method.family == kRattleFamily ? Scene::kHolonomic : 0;
     segment.calls.holonomic_residuals = holonomic_residuals<B>;
     segment.calls.project_on_manifold = project_on_manifold<B>;
     segment.calls.tangent_projector = tangent_projector<B>;
-  } else if constexpr (IsTranscribed<System>::value) {
+  }
+  if constexpr (IsTranscribed<System>::value) {
+    if (segment.forced > 0) return segment;
     segment.transcribed = kTranscribed<B>;
     segment.calls.midpoint = midpoint<B>;
     segment.calls.midpoint_multipliers = midpoint_multipliers<B>;
@@ -280,18 +283,56 @@ Segment bind(const Scene& scene, const Method& method, B bound) {
   return segment;
 }
 
-}  // namespace segment_calls
-
-// Whether `method` can integrate the scene: holonomic constraints need RATTLE.
 template <class Scene>
-bool suits(const Method& method) {
-  return !HasHolonomic<Scene> || method.family == kRattleFamily;
+Segment bind_rattle(const Scene& scene, const Method& method) {
+  auto system = make_system(scene);
+  using B = Bound<Rattle<decltype(system)>>;
+  return bind(scene, method, B{std::move(system), make_tableau(method)});
 }
 
-// gauss16, or rattle where there are holonomic constraints.
+template <class Scene>
+Segment bind_runge_kutta(const Scene& scene, const Method& method) {
+  auto system = make_system(scene);
+  using System = decltype(system);
+  const Tableau<double> tableau = make_tableau(method);
+  // The default method with all that the compiler can do for it; one kernel for the others.
+  constexpr int kFixed = 8;
+  if (tableau.coupling == Coupling::kFull && !tableau.partitioned && tableau.stages() == kFixed) {
+    using Stepper = RungeKutta<System, kFixed>;
+    using B = Bound<Stepper>;
+    Segment segment = bind(scene, method, B{std::move(system), fixed_stages<kFixed>(tableau)});
+    segment.calls.automatic_flow = automatic_flow<B>;
+    if constexpr (PacksRates<System>) segment.calls.adaptive_batch = adaptive_batch<B>;
+    return segment;
+  }
+  using B = Bound<RungeKutta<System>>;
+  Segment segment = bind(scene, method, B{std::move(system), tableau});
+  const bool gauss = tableau.coupling == Coupling::kFull && !tableau.partitioned &&
+                     tableau.order == 2 * tableau.stages();
+  if (gauss && tableau.stages() >= kLeastSampled) {
+    segment.calls.automatic_flow = automatic_flow<B>;
+  }
+  return segment;
+}
+
+}  // namespace segment_calls
+
+// Whether holonomic constraints of the scene need RATTLE.
+template <class Scene>
+inline constexpr bool kNeedsRattle = HasHolonomic<Scene> && !IsProduct<Scene>;
+
+// Whether `method` can integrate the scene.
+template <class Scene>
+bool suits(const Method& method) {
+  if (!HasHolonomic<Scene> || method.family == kRattleFamily) return true;
+  const bool keeps_quadratic = method.family == kGaussFamily || method.family == kComposedFamily;
+  return IsProduct<Scene> && keeps_quadratic;
+}
+
+// gauss16, or rattle where it is needed.
 template <class Scene>
 constexpr std::string_view default_method() {
-  return HasHolonomic<Scene> ? "rattle" : "gauss16";
+  return kNeedsRattle<Scene> ? "rattle" : "gauss16";
 }
 
 // A Segment of the scene with a method of methods.h. Throws std::invalid_argument when a parameter
@@ -304,33 +345,16 @@ Segment make_segment(const Scene& scene, std::string_view method_name = default_
   if (method == nullptr || !suits<Scene>(*method)) {
     throw std::invalid_argument("method " + std::string(method_name) +
                                 (method == nullptr ? ": there is none of that name"
-                                                   : ": the holonomic constraints of this scene "
-                                                     "need rattle, rattle4 or rattle6"));
+                                                   : ": it does not keep the holonomic "
+                                                     "constraints of this scene"));
   }
-  const Tableau<double> tableau = make_tableau(*method);
-  auto system = make_system(scene);
-  using System = decltype(system);
-  if constexpr (HasHolonomic<Scene>) {
-    return bind(scene, *method, Bound<Rattle<System>>{std::move(system), tableau});
+  if constexpr (kNeedsRattle<Scene>) {
+    return bind_rattle(scene, *method);
+  } else if constexpr (HasHolonomic<Scene>) {
+    return method->family == kRattleFamily ? bind_rattle(scene, *method)
+                                           : bind_runge_kutta(scene, *method);
   } else {
-    // The default method with all that the compiler can do for it; one kernel for the others.
-    constexpr int kFixed = 8;
-    if (tableau.coupling == Coupling::kFull && !tableau.partitioned && tableau.stages() == kFixed) {
-      using Stepper = RungeKutta<System, kFixed>;
-      using B = Bound<Stepper>;
-      Segment segment = bind(scene, *method, B{std::move(system), fixed_stages<kFixed>(tableau)});
-      segment.calls.automatic_flow = automatic_flow<B>;
-      if constexpr (PacksRates<System>) segment.calls.adaptive_batch = adaptive_batch<B>;
-      return segment;
-    }
-    using B = Bound<RungeKutta<System>>;
-    Segment segment = bind(scene, *method, B{std::move(system), tableau});
-    const bool gauss = tableau.coupling == Coupling::kFull && !tableau.partitioned &&
-                       tableau.order == 2 * tableau.stages();
-    if (gauss && tableau.stages() >= kLeastSampled) {
-      segment.calls.automatic_flow = automatic_flow<B>;
-    }
-    return segment;
+    return bind_runge_kutta(scene, *method);
   }
 }
 

@@ -62,7 +62,8 @@ struct Segment {
   int dof = 0;
   int multipliers = 0;
   int transcribed = 0;     // constraints of the midpoint transcription; k for velocity constraints
-  int holonomic = 0;       // number of constraints h(q) = 0
+  int holonomic = 0;       // number of constraints h(q) = 0,
+  int forced = 0;          // and of those kept by forces: momenta along their Dh move nothing
   bool autonomous = true;  // H does not depend on time
   std::string method;
   int order = 0;

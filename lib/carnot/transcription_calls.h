@@ -26,7 +26,8 @@ auto transcription(const OptimalControl<Scene>& system) {
 template <class System>
 struct IsTranscribed : std::false_type {};
 template <class Scene>
-struct IsTranscribed<VelocityConstraints<Scene>> : std::bool_constant<!HasHolonomic<Scene>> {};
+struct IsTranscribed<VelocityConstraints<Scene>>
+    : std::bool_constant<!HasHolonomic<Scene> || IsProduct<Scene>> {};
 template <class Scene>
 struct IsTranscribed<OptimalControl<Scene>> : std::bool_constant<OptimalControl<Scene>::kMetric> {};
 

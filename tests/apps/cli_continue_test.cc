@@ -186,7 +186,16 @@ TEST(ContinueCommand, BadInputIsOneLine) {
       {unicycle({"--along", "time=2", "--output", "a.txt"}), "--output"},
       {{"continue", "unicycle", "--to", "1,0,0", "--along", "time=2"}, "--from"},
       {{"continue", "rod-skate", "--from", "0,0,1,0", "--to", "1,0,2,0", "--along", "time=2"},
-       "holonomic"}};
+       "holonomic"},
+      {{"continue",
+        "satellite-quaternion",
+        "--from",
+        "1,0,0,0",
+        "--to",
+        "0,1,0,0",
+        "--along",
+        "to=0,0,1,0"},
+       "leaves the holonomic constraints"}};
   for (const auto& [words, what] : cases) expect_refused(words, HasSubstr(what));
 }
 

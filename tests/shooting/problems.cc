@@ -110,6 +110,14 @@ BoundaryValueProblem satellite(std::vector<double> to) {
   return {segment("satellite"), {0, 0, 0}, std::move(to)};
 }
 
+BoundaryValueProblem satellite_quaternion(std::vector<double> to) {
+  return {segment("satellite-quaternion"), {1, 0, 0, 0}, std::move(to)};
+}
+
+BoundaryValueProblem plate_ball_quaternion(std::vector<double> to) {
+  return {segment("plate-ball-quaternion"), {0, 0, 1, 0, 0, 0}, std::move(to)};
+}
+
 BoundaryValueProblem oscillator(std::vector<double> from, std::vector<double> to, double time) {
   return {make_segment(Oscillator{}), std::move(from), std::move(to), time};
 }

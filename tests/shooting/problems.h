@@ -24,6 +24,9 @@ BoundaryValueProblem unicycle(std::vector<double> from, std::vector<double> to);
 BoundaryValueProblem grushin(std::vector<double> from, std::vector<double> to);
 BoundaryValueProblem bicycle(std::vector<double> to);  // from the origin; singular at delta = pi/2
 BoundaryValueProblem satellite(std::vector<double> to);  // the same; at theta = pi/2
+// By quaternions, from the attitude 1, in (0, 0) for the ball.
+BoundaryValueProblem satellite_quaternion(std::vector<double> to);
+BoundaryValueProblem plate_ball_quaternion(std::vector<double> to);
 
 // Two equal springs, no constraint: q'' = -q. Every extremal is conjugate, doubly, at t = pi.
 BoundaryValueProblem oscillator(std::vector<double> from, std::vector<double> to, double time);

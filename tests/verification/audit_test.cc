@@ -20,12 +20,12 @@ constexpr long kSteps = 20;
 
 AuditSubject subject_of(const std::string& scene) { return *audit_subject(find_scene(scene)); }
 
-// RATTLE where there are holonomic constraints, all the others elsewhere.
+// All that suit; RATTLE where there are holonomic constraints only.
 std::vector<Method> methods_of(const AuditSubject& subject) {
   std::vector<Method> chosen;
   for (const Method& method : methods()) {
-    const bool rattle = method.family == kRattleFamily;
-    if (rattle == (subject.entry->holonomic > 0)) chosen.push_back(method);
+    const bool needless = method.family == kRattleFamily && subject.entry->holonomic == 0;
+    if (subject.entry->suits(method) && !needless) chosen.push_back(method);
   }
   return chosen;
 }
@@ -114,6 +114,28 @@ INSTANTIATE_TEST_SUITE_P(Scenes,
                          AuditTest,
                          ::testing::ValuesIn(default_audit_scenes()),
                          plain_name);
+
+// Scenes whose holonomic constraint is kept by every method that keeps quadratic invariants.
+TEST(ProductScenes, KeepTheLawsOfEveryMethodThatSuits) {
+  constexpr double kRoundOff = 100 * kEps;
+  constexpr int kResolved = 6;  // orders: their motion is smooth
+  for (const char* scene : {"satellite-quaternion", "plate-ball-quaternion"}) {
+    const AuditSubject subject = subject_of(scene);
+    const ReferenceRun reference = audit_reference(subject);
+    EXPECT_FALSE(subject.entry->suits(*find_method("radau5")));
+    for (const Method& method : methods_of(subject)) {
+      SCOPED_TRACE(method.name);
+      const Segment segment = subject.segment(method.name);
+      EXPECT_LE(measure_symplecticity(segment, subject.start, subject.step, kSteps), kRoundOff);
+      const EnergyLaw law =
+          measure_energy(segment, subject.start, subject.step, 2 * kSteps, Progress());
+      EXPECT_LE(law.constraint_error, kRoundOff);
+      EXPECT_LE(law.holonomic_error, kRoundOff);
+      if (method.order > kResolved) continue;
+      EXPECT_TRUE(resolved(measure_order(segment, reference), method.order));
+    }
+  }
+}
 
 TEST(AuditOrder, IsResolvedUpToTwelve) {
   const AuditSubject subject = subject_of("heisenberg");

@@ -6,9 +6,10 @@
 //   y' + Omega_x = 0,    -x' + Omega_y = 0,    Omega_z = 0,    h = |q|^2 - 1,
 //
 // cost (x'^2 + y'^2)/2. The first two terms are multiplied by |q|^2, so that off the manifold the
-// admissible velocities are simple too: x' = u1, y' = u2, q' = (-u2 i q + u1 j q + u3 q)/2. The
-// cost counts 2 q.q' = u3 |q|^2 like a third velocity, zero on the manifold: else M would not be
-// positive along q, a direction that the manifold does not have. q and -q are the same attitude.
+// ball rolls too, with the attitude q/|q|: x' = u1, y' = u2, q' = (-u2 i q + u1 j q + u3 q)/2. The
+// cost counts 2 q.q'/|q|^2 = u3 like a third velocity, zero on the manifold: else M would not be
+// positive along q, a direction that the manifold does not have. log |q| moves apart from the
+// rest. q and -q are the same attitude.
 // The scene plate-ball is the same in Euler angles. Invariants: H, p_x, p_y, the momenta of turns
 // of the ball in the body, (q i).p_q and so on, and x p_y - y p_x + (k q).p_q/2. Source: Jurdjevic,
 // Arch. Rational Mech. Anal. 124 (1993).
@@ -25,13 +26,17 @@ struct PlateBallQuaternion {
   static constexpr int kDof = 6;
   static constexpr int kMultipliers = 3;
   static constexpr int kHolonomic = 1;
+  static constexpr bool kProduct = true;
 
   template <class T>
   [[nodiscard]] Matrix<T, 6, 6> mass(const Vector<T, 6>& q) const {
     Matrix<T, 6, 6> m = Matrix<T, 6, 6>::Constant(constant<T>(0));
     m(0, 0) = m(1, 1) = constant<T>(1);
+    const Vector<T, 4> attitude = q.template tail<4>();
+    const T square = dot(attitude, attitude);
+    const T scale = constant<T>(4) / (square * square);
     for (int i = 2; i < 6; ++i) {
-      for (int j = 2; j < 6; ++j) m(i, j) = constant<T>(4) * q[i] * q[j];
+      for (int j = 2; j < 6; ++j) m(i, j) = scale * q[i] * q[j];
     }
     return m;
   }
@@ -72,24 +77,19 @@ struct PlateBallQuaternion {
 
   // The diagonal of B'M B.
   template <class T>
-  [[nodiscard]] Vector<T, 3> frame_masses(const Vector<T, 6>& q) const {
-    const Vector<T, 4> attitude = q.template tail<4>();
-    const T square = dot(attitude, attitude);
-    return {constant<T>(1), constant<T>(1), square * square};
+  [[nodiscard]] Vector<T, 3> frame_masses(const Vector<T, 6>& /*q*/) const {
+    return Vector<T, 3>::Constant(constant<T>(1));
   }
 
   // d/dq [p.B u - u'B'M B u/2]: the attitude has B u = c q with the quaternion
   // c = (u3, -u2, u1, 0)/2.
   template <class T>
-  [[nodiscard]] Vector<T, 6> frame_gradient(const Vector<T, 6>& q,
+  [[nodiscard]] Vector<T, 6> frame_gradient(const Vector<T, 6>& /*q*/,
                                             const Vector<T, 6>& p,
                                             const Vector<T, 3>& u) const {
     const T half = constant<T>(0.5);
     const Vector<T, 4> conj_c(half * u[2], half * u[1], -half * u[0], constant<T>(0));
-    const Vector<T, 4> attitude = q.template tail<4>();
-    const T scale = constant<T>(2) * dot(attitude, attitude) * u[2] * u[2];
-    const Vector<T, 4> by_attitude =
-        quaternion_product(conj_c, Vector<T, 4>(p.template tail<4>())) - scale * attitude;
+    const Vector<T, 4> by_attitude = quaternion_product(conj_c, Vector<T, 4>(p.template tail<4>()));
     Vector<T, 6> gradient;
     gradient << constant<T>(0), constant<T>(0), by_attitude;
     return gradient;

@@ -7,9 +7,11 @@
 //
 // cost (j1 omega_x^2 + j2 omega_y^2 + omega_z^2)/2. M would be singular along q itself, a direction
 // that the manifold does not have: the cost counts 2 q.q' like a fourth rate, which is zero there.
-// Admissible velocities, off the manifold too: q' = (u1 q i + u2 q j + u3 q)/2.
-// q and -q are the same attitude. The scene satellite is the same in Euler angles.
-// Invariants: H and the angular momentum in space, (i q).p/2, (j q).p/2, (k q).p/2.
+// Off the manifold all four are those of q/|q| and log |q|^2, divided by |q|^2: the admissible
+// velocities are q' = (u1 q i + u2 q j + u3 q)/2, with u the rates, and log |q| moves apart from
+// the attitude. g is not divided. q and -q are the same attitude. The scene satellite is the same
+// in Euler angles. Invariants: H and the angular momentum in space, (i q).p/2, (j q).p/2, (k
+// q).p/2.
 #pragma once
 
 #include <array>
@@ -25,6 +27,7 @@ struct SatelliteQuaternion {
   static constexpr int kDof = 4;
   static constexpr int kMultipliers = 1;
   static constexpr int kHolonomic = 1;
+  static constexpr bool kProduct = true;
 
   double j1 = 1;  // moments of inertia about the body axes, relative to the third
   double j2 = 1;
@@ -33,9 +36,11 @@ struct SatelliteQuaternion {
   [[nodiscard]] Matrix<T, 4, 4> mass(const Vector<T, 4>& q) const {
     const Matrix<T, 4, 4> rates = body_rates(q);
     const Vector<T, 4> inertia(constant<T>(1), constant<T>(j1), constant<T>(j2), constant<T>(1));
+    const T square = dot(q, q);
+    const T scale = constant<T>(1) / (square * square);
     Matrix<T, 4, 4> weighted = rates;
     for (int i = 0; i < 4; ++i) {
-      for (int j = 0; j < 4; ++j) weighted(i, j) = inertia[i] * rates(i, j);
+      for (int j = 0; j < 4; ++j) weighted(i, j) = scale * inertia[i] * rates(i, j);
     }
     return product(rates.transpose(), weighted);
   }
@@ -63,23 +68,20 @@ struct SatelliteQuaternion {
     return b;
   }
 
-  // The diagonal of B'M B: the rates of column j of B are |q|^2 times a unit vector.
+  // The diagonal of B'M B.
   template <class T>
-  [[nodiscard]] Vector<T, 3> frame_masses(const Vector<T, 4>& q) const {
-    const T square = dot(q, q);
-    const T scale = square * square;
-    return {constant<T>(j1) * scale, constant<T>(j2) * scale, scale};
+  [[nodiscard]] Vector<T, 3> frame_masses(const Vector<T, 4>& /*q*/) const {
+    return {constant<T>(j1), constant<T>(j2), constant<T>(1)};
   }
 
   // d/dq [p.B u - u'B'M B u/2]: B u = q c with the quaternion c = (u3, u1, u2, 0)/2.
   template <class T>
-  [[nodiscard]] Vector<T, 4> frame_gradient(const Vector<T, 4>& q,
+  [[nodiscard]] Vector<T, 4> frame_gradient(const Vector<T, 4>& /*q*/,
                                             const Vector<T, 4>& p,
                                             const Vector<T, 3>& u) const {
     const T half = constant<T>(0.5);
     const Vector<T, 4> conj_c(half * u[2], -half * u[0], -half * u[1], constant<T>(0));
-    const T energy = constant<T>(j1) * u[0] * u[0] + constant<T>(j2) * u[1] * u[1] + u[2] * u[2];
-    return quaternion_product(p, conj_c) - (constant<T>(2) * dot(q, q) * energy) * q;
+    return quaternion_product(p, conj_c);
   }
 
   static constexpr auto parameters() {

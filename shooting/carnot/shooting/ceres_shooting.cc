@@ -82,7 +82,7 @@ ceres::Solver::Options solver_options(const BoundaryValueProblem& problem,
   solver.parameter_tolerance = 1e-15;
   solver.initial_trust_region_radius = 1e6;  // the start is good: nearly Newton's method
   // Momenta along the rows of Dh move nothing: columns of zeros that need a diagonal.
-  if (problem.segment.holonomic > 0) solver.min_lm_diagonal = 1e-2;
+  if (problem.segment.forced > 0) solver.min_lm_diagonal = 1e-2;
   solver.num_threads = 1;
   solver.logging_type = ceres::SILENT;
   return solver;

@@ -97,7 +97,7 @@ bool passes_singularity(const BoundaryValueProblem& problem, const Extremal& ext
 ConjugateTimes conjugate_times_along(const BoundaryValueProblem& problem,
                                      const Extremal& extremal,
                                      ConjugateTimesOptions options) {
-  if (problem.segment.holonomic > 0 || passes_singularity(problem, extremal)) return {};
+  if (problem.segment.forced > 0 || passes_singularity(problem, extremal)) return {};
   options.doubt = doubt_of(problem, extremal.geodesic);
   const long steps = extremal.geodesic.plan.count / 2;
   return conjugate_times(problem, extremal.knots, steps, options);

@@ -87,8 +87,9 @@ void check_start(const BoundaryValueProblem& problem, const Geodesic& start) {
     throw std::invalid_argument("the extremal at the start has " + std::to_string(samples) +
                                 " samples, must have 64 k + 1");
   }
-  if (problem.segment.holonomic > 0) {
-    throw std::invalid_argument("continuation is not offered with holonomic constraints");
+  if (problem.segment.forced > 0) {
+    throw std::invalid_argument(
+        "continuation is not offered with holonomic constraints that need RATTLE");
   }
 }
 

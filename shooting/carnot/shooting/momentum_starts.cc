@@ -43,7 +43,7 @@ std::vector<double> momentum_start(const BoundaryValueProblem& problem, std::uin
     const double factor = size * std::exp(magnitude(random));
     for (double& x : p) x = factor * normal(random);
   }
-  if (problem.segment.holonomic == 0) return p;
+  if (problem.segment.forced == 0) return p;
   std::vector<double> z = problem.from;
   z.insert(z.end(), p.begin(), p.end());
   if (!problem.segment.project_on_manifold(0, z.data())) return {};
