@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "carnot/gauss.h"
-#include "carnot/make_segment.h"
 #include "testing/runs.h"
+#include "testing/segments.h"
 
 namespace carnot::automatic_flow_test {
 namespace {

@@ -7,9 +7,9 @@
 #include <limits>
 #include <vector>
 
-#include "carnot/make_segment.h"
 #include "testing/order.h"
 #include "testing/runs.h"
+#include "testing/segments.h"
 
 namespace carnot::batch_test {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "carnot/gauss.h"
-#include "carnot/make_segment.h"
 #include "testing/runs.h"
+#include "testing/segments.h"
 
 namespace carnot::segment_test {
 namespace {

@@ -7,8 +7,8 @@
 #include <limits>
 #include <numbers>
 
-#include "carnot/make_segment.h"
 #include "carnot/scenes/vehicle.h"
+#include "testing/segments.h"
 
 namespace carnot::winding_test {
 namespace {
