@@ -19,14 +19,15 @@
 // That makes s/2 + 1 real systems of size 2n of one with s 2n unknowns.
 // Source: Antonana, Makazaga & Murua, Efficient implementation of symplectic implicit Runge-Kutta
 // schemes with simplified Newton iterations, Numerical Algorithms 78 (2018).
+//
+// Loops over plain arrays: Eigen's expressions of these took a third of the time to compile a step.
 #pragma once
 
-#include <Eigen/Jacobi>
+#include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "carnot/lu.h"
-#include "carnot/tableau.h"
+#include "carnot/stage_pairs.h"
 
 namespace carnot {
 
@@ -34,135 +35,103 @@ namespace carnot {
 template <class T, int size, int most>
 class DecoupledStages {
  public:
-  using Square = Eigen::Matrix<T, size, size, Eigen::RowMajor>;
+  using Square = Matrix<T, size, size>;
 
-  // Finds the singular vectors. False where the method is not symplectic and symmetric.
+  // False where the method is not symplectic and symmetric.
   template <int s>
   [[nodiscard]] bool set_method(const Tableau<T, s>& tableau) {
-    using std::sqrt;
-    count_ = tableau.stages();
-    pairs_ = 0;
-    if (tableau.partitioned || !is_symplectic(tableau) || !is_symmetric(tableau)) return false;
-    const Combinations beta = tableau.b.cwiseSqrt();
-    Basis skew(count_, count_);
-    for (int i = 0; i < count_; ++i) {
-      for (int j = 0; j < count_; ++j) {
-        skew(i, j) = beta[i] * (tableau.mu(i, j) - T(0.5)) * beta[j];
-      }
-    }
-    pairs_ = (count_ + 1) / 2;
-    Basis even = Basis::Zero(count_, pairs_);
-    for (int k = 0; k < pairs_; ++k) {
-      const T part = 2 * k + 1 == count_ ? T(1) : sqrt(T(0.5));
-      even(k, k) = even(count_ - 1 - k, k) = part;
-    }
-    Basis image = skew.lazyProduct(even);
-    orthogonalize(image, even);
-    for (int k = 0; k < pairs_; ++k) {
-      sigma_[k] = image.col(k).norm();
-      weight_[k] = beta.dot(even.col(k));
-      // An odd number of stages has an even combination without partner: sigma = 0.
-      const T inverse = sigma_[k] > sqrt(epsilon<T>()) ? T(-1) / sigma_[k] : T(0);
-      if (inverse == T(0)) sigma_[k] = T(0);
-      image.col(k) *= inverse;
-    }
-    from_even_ = beta.asDiagonal() * even;
-    from_odd_ = beta.asDiagonal() * image;
-    to_even_ = beta.cwiseInverse().asDiagonal() * even;
-    to_odd_ = beta.cwiseInverse().asDiagonal() * image;
-    return true;
+    return pairs_.set_method(tableau);
   }
 
-  // For the Jacobian h J. False where a system is singular. Cost: s/2 + 1 inverses.
-  [[nodiscard]] bool factor(const Square& jacobian) {
-    jacobian_ = jacobian;
-    const Square square = jacobian.lazyProduct(jacobian);
-    Square sum = Square::Identity();
-    for (int k = 0; k < pairs_; ++k) {
-      const Square m = Square::Identity() + (sigma_[k] * sigma_[k]) * square;
+  // For steps of h. False where a system is singular. Cost: s/2 + 1 inverses.
+  [[nodiscard]] bool factor(const T& h, const Square& jacobian) {
+    for (int i = 0; i < kEntries; ++i) jacobian_[i] = h * jacobian.data()[i];
+    Columns square;
+    Columns sum;
+    multiply(jacobian_, jacobian_, square);
+    set_identity(sum);
+    for (int k = 0; k < pairs_.count; ++k) {
+      Columns m;
+      set_identity(m);
+      const T sigma = pairs_.sigma[k];
+      for (int i = 0; i < kEntries; ++i) m[i] += sigma * sigma * square[i];
       if (!invert(m, inverse_[k])) return false;
-      sum -= (weight_[k] * weight_[k] / T(2)) * inverse_[k].lazyProduct(jacobian);
+      multiply(inverse_[k], jacobian_, m);
+      const T weight = pairs_.weight[k];
+      for (int i = 0; i < kEntries; ++i) sum[i] -= weight * weight / T(2) * m[i];
     }
     return invert(sum, inverse_mean_);
   }
 
   // Overwrites R, a column after the other, by X.
   void solve(T* columns) const {
-    Eigen::Map<Eigen::Matrix<T, size, Eigen::Dynamic, 0, size, most>> x(columns, size, count_);
-    std::array<Point, kPairs> even;
-    std::array<Point, kPairs> odd;
-    Point sum = Point::Zero();
-    for (int k = 0; k < pairs_; ++k) {
-      odd[k] = x.lazyProduct(from_odd_.col(k));
-      even[k] = x.lazyProduct(from_even_.col(k));
-      even[k] += sigma_[k] * Point(jacobian_.lazyProduct(odd[k]));
-      even[k] = inverse_[k].lazyProduct(even[k]).eval();
-      sum += weight_[k] * even[k];
+    std::array<Point, kPairs> even{};
+    std::array<Point, kPairs> odd{};
+    Point sum{};
+    for (int k = 0; k < pairs_.count; ++k) {
+      Point rhs{};
+      for (int j = 0; j < pairs_.stages; ++j) {
+        add(pairs_.from_even[k][j], columns + j * size, rhs.data());
+        add(pairs_.from_odd[k][j], columns + j * size, odd[k].data());
+      }
+      add_product(pairs_.sigma[k], jacobian_, odd[k].data(), rhs.data());
+      add_product(T(1), inverse_[k], rhs.data(), even[k].data());
+      add(pairs_.weight[k], even[k].data(), sum.data());
     }
-    const Point mean = inverse_mean_.lazyProduct(sum);
-    const Point common = jacobian_.lazyProduct(mean) / T(2);
-    x.setZero();
-    for (int k = 0; k < pairs_; ++k) {
-      even[k] += weight_[k] * Point(inverse_[k].lazyProduct(common));
-      odd[k] -= sigma_[k] * Point(jacobian_.lazyProduct(even[k]));
-      x += even[k].lazyProduct(to_even_.col(k).transpose());
-      x += odd[k].lazyProduct(to_odd_.col(k).transpose());
+    Point mean{};
+    Point common{};
+    add_product(T(1), inverse_mean_, sum.data(), mean.data());
+    add_product(T(0.5), jacobian_, mean.data(), common.data());
+    std::fill_n(columns, size * pairs_.stages, T(0));
+    for (int k = 0; k < pairs_.count; ++k) {
+      add_product(pairs_.weight[k], inverse_[k], common.data(), even[k].data());
+      add_product(-pairs_.sigma[k], jacobian_, even[k].data(), odd[k].data());
+      for (int j = 0; j < pairs_.stages; ++j) {
+        add(pairs_.to_even[k][j], even[k].data(), columns + j * size);
+        add(pairs_.to_odd[k][j], odd[k].data(), columns + j * size);
+      }
     }
   }
 
  private:
-  static constexpr int kPairs = (most + 1) / 2;
-  using Point = Vector<T, size>;
-  using Combinations = Eigen::Matrix<T, Eigen::Dynamic, 1, 0, most, 1>;
-  using Basis = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, 0, most, most>;
+  using Pairs = StagePairs<T, most>;
+  static constexpr int kPairs = Pairs::kPairs;
+  static constexpr int kEntries = size * size;
+  using Point = std::array<T, size>;
+  using Columns = std::array<T, kEntries>;  // of a matrix, one after the other
 
-  // mu_ij - 1/2 changes its sign where the stages are reversed.
-  template <int s>
-  static bool is_symmetric(const Tableau<T, s>& tableau) {
-    const T round_off = T(1000) * epsilon<T>();
-    const int last = tableau.stages() - 1;
-    for (int i = 0; i <= last; ++i) {
-      for (int j = 0; j <= last; ++j) {
-        const T sum = tableau.mu(i, j) + tableau.mu(last - i, last - j);
-        if (!(abs(sum - T(1)) <= round_off)) return false;
-      }
-    }
-    return true;
+  // y += weight x.
+  static void add(const T& weight, const T* x, T* y) {
+    for (int i = 0; i < size; ++i) y[i] += weight * x[i];
   }
-
-  // Rotates the columns of both alike until those of `image` are orthogonal (one-sided Jacobi).
-  static void orthogonalize(Basis& image, Basis& even) {
-    constexpr int kSweeps = 12;
-    for (int sweep = 0; sweep < kSweeps; ++sweep) {
-      for (int q = 1; q < image.cols(); ++q) {
-        for (int p = 0; p < q; ++p) {
-          Eigen::JacobiRotation<T> rotation;
-          rotation.makeJacobi(image.col(p).squaredNorm(),
-                              image.col(p).dot(image.col(q)),
-                              image.col(q).squaredNorm());
-          image.applyOnTheRight(p, q, rotation);
-          even.applyOnTheRight(p, q, rotation);
-        }
-      }
+  // y += weight a x.
+  static void add_product(const T& weight, const Columns& a, const T* x, T* y) {
+    Point ax;
+    for (int i = 0; i < size; ++i) {
+      T sum = a[i] * x[0];
+      for (int j = 1; j < size; ++j) sum += a[j * size + i] * x[j];
+      ax[i] = sum;
     }
+    add(weight, ax.data(), y);
   }
-
-  [[nodiscard]] static bool invert(Square m, Square& inverse) {
-    inverse.setIdentity();
+  static void multiply(const Columns& a, const Columns& b, Columns& c) {
+    c.fill(T(0));
+    for (int j = 0; j < size; ++j) add_product(T(1), a, b.data() + j * size, c.data() + j * size);
+  }
+  static void set_identity(Columns& a) {
+    a.fill(T(0));
+    for (int i = 0; i < size; ++i) a[i * size + i] = T(1);
+  }
+  // lu_solve() takes rows for columns, which transposes m and its inverse alike.
+  [[nodiscard]] static bool invert(Columns m, Columns& inverse) {
+    set_identity(inverse);
     return lu_solve(size, m.data(), size, inverse.data());
   }
 
-  int count_ = 0;  // stages
-  int pairs_ = 0;
-  std::array<T, kPairs> sigma_;
-  std::array<T, kPairs> weight_;  // w_k
-  Basis from_even_;               // a column for each k: coefficients from columns of stages,
-  Basis from_odd_;
-  Basis to_even_;  // and back
-  Basis to_odd_;
-  Square jacobian_;                     // h J
-  std::array<Square, kPairs> inverse_;  // of M_k
-  Square inverse_mean_;
+  Pairs pairs_;
+  Columns jacobian_;                     // h J
+  std::array<Columns, kPairs> inverse_;  // of M_k
+  Columns inverse_mean_;
 };
 
 }  // namespace carnot

@@ -54,16 +54,22 @@ auto sum_of_increments(const Tableau<T, s>& tableau, const Stages& increments) {
 template <class T, int size, int most>
 class StageEquations {
  public:
-  // The blocks of stage j in the equations of the stages first, ..., end - 1; a = h omega_j df/dz.
+  // The blocks of stage j in the equations of the stages first, ..., end - 1; a = df/dz, and
+  // weight = h omega_j.
   template <int s>
-  void set_column(
-      const Tableau<T, s>& tableau, int first, int end, int j, const Matrix<T, size, size>& a) {
+  void set_column(const Tableau<T, s>& tableau,
+                  int first,
+                  int end,
+                  int j,
+                  const T& weight,
+                  const Matrix<T, size, size>& a) {
     const int width = size * (end - first);
     for (int i = first; i < end; ++i) {
       for (int row = 0; row < size; ++row) {
         const T mu = 2 * row < size ? tableau.mu(i, j) : tableau.momentum_mu(i, j);
+        const T factor = mu * weight;
         T* const to = matrix_.data() + ((i - first) * size + row) * width + (j - first) * size;
-        for (int c = 0; c < size; ++c) to[c] = T(i == j && row == c ? 1 : 0) - mu * a(row, c);
+        for (int c = 0; c < size; ++c) to[c] = T(i == j && row == c ? 1 : 0) - factor * a(row, c);
       }
     }
   }

@@ -10,6 +10,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 
 #include "carnot/decoupled_stages.h"
@@ -27,13 +29,17 @@ class StageNewton {
     if (!prepared_) suited_ = decoupled_.set_method(kernel.tableau_);
     prepared_ = true;
     if (!suited_ || !begin(kernel, block, report)) return false;
-    const Point mean = block.of(kernel.stages_).rowwise().mean();
+    const int count = block.end() - block.begin();
+    Point mean = Point::Zero();
+    for (int j = block.begin(); j < block.end(); ++j) {
+      for (int i = 0; i < size; ++i) mean[i] += kernel.stages_(i, j) / T(count);
+    }
     Square a;
     if (!jacobian(kernel, block.t + block.h / T(2), mean, block.end() / 2, report, a)) return false;
-    if (!decoupled_.factor(block.h * a)) return false;
+    if (!decoupled_.factor(block.h, a)) return false;
     const auto linearize = [&] { return kernel.evaluate_all(block, report); };
-    return iterate(kernel, block, report, true, linearize, [&](auto& x) {
-      decoupled_.solve(x.data());
+    return iterate(kernel, block, report, true, linearize, [&](T* x) {
+      decoupled_.solve(x);
       return true;
     });
   }
@@ -47,13 +53,13 @@ class StageNewton {
         const T time = block.t + kernel.tableau_.c[j] * block.h;
         if (!kernel.evaluate(block, j, report)) return false;
         if (!jacobian(kernel, time, kernel.stages_.col(j), j, report, a)) return false;
-        a *= block.h * kernel.tableau_.omega[j];
-        system_.set_column(kernel.tableau_, block.begin(), block.end(), j, a);
+        const T weight = block.h * kernel.tableau_.omega[j];
+        system_.set_column(kernel.tableau_, block.begin(), block.end(), j, weight, a);
       }
       return true;
     };
-    return iterate(kernel, block, report, false, linearize, [&](auto& x) {
-      return system_.solve(block.end() - block.begin(), x.data());
+    return iterate(kernel, block, report, false, linearize, [&](T* x) {
+      return system_.solve(block.end() - block.begin(), x);
     });
   }
 
@@ -86,17 +92,28 @@ class StageNewton {
                       bool monotone,
                       const Linearize& linearize,
                       const Solve& solve) {
+    using std::abs;
     T smallest = std::numeric_limits<T>::max();
     auto next = kernel.stages_;
     for (int iteration = 0; iteration < kMostIterations; ++iteration) {
       if (!linearize()) return false;
       kernel.set_stages(block, next);
       // Stage by stage, as the rows of the systems.
-      Eigen::Matrix<T, size, Eigen::Dynamic, Eigen::ColMajor, size, most> correction =
-          block.of(next) - block.of(kernel.stages_);
-      if (!solve(correction) || !correction.allFinite()) return false;
-      block.of(kernel.stages_) += correction;
-      const T change = correction.cwiseAbs().maxCoeff();
+      std::array<T, size * most> correction;
+      T* to = correction.data();
+      for (int j = block.begin(); j < block.end(); ++j) {
+        for (int i = 0; i < size; ++i) *to++ = next(i, j) - kernel.stages_(i, j);
+      }
+      if (!solve(correction.data())) return false;
+      T change(0);
+      const T* from = correction.data();
+      for (int j = block.begin(); j < block.end(); ++j) {
+        for (int i = 0; i < size; ++i, ++from) {
+          if (!(abs(*from) <= std::numeric_limits<T>::max())) return false;
+          change = std::max(change, abs(*from));
+          kernel.stages_(i, j) += *from;
+        }
+      }
       const bool stalled = change >= smallest;
       smallest = std::min(smallest, change);
       if (change <= kernel.stop_ || (stalled && kernel.settled(block, Point::Constant(change)))) {

@@ -31,7 +31,7 @@ void expect_solved(const Tableau<T>& tableau, double scale) {
         test::random_matrix<kSize, kSize>(generator, scale).template cast<T>();
     Columns rhs(kSize, s);
     for (int j = 0; j < s; ++j) rhs.col(j) = test::random_vector<kSize>(generator).cast<T>();
-    ASSERT_TRUE(decoupled.factor(jacobian));
+    ASSERT_TRUE(decoupled.factor(T(1), jacobian));
     Columns x = rhs;
     decoupled.solve(x.data());
     const Columns f = jacobian * x;
@@ -63,7 +63,7 @@ TEST(DecoupledStagesTest, NothingToSolve) {
   const Tableau<double> tableau = gauss_tableau<double>(8);
   Decoupled<double> decoupled;
   ASSERT_TRUE(decoupled.set_method(tableau));
-  ASSERT_TRUE(decoupled.factor(Decoupled<double>::Square::Zero()));
+  ASSERT_TRUE(decoupled.factor(1, Decoupled<double>::Square::Zero()));
   test::Generator generator(8);
   const Matrix<double, kSize, 8> rhs = test::random_matrix<kSize, 8>(generator);
   Matrix<double, kSize, 8> x = rhs;
@@ -84,7 +84,7 @@ TEST(DecoupledStagesTest, TellsOfSingularSystems) {
   Decoupled<double> decoupled;
   ASSERT_TRUE(decoupled.set_method(tableau));
   // The midpoint rule: I - h J / 2.
-  EXPECT_FALSE(decoupled.factor(2 * Decoupled<double>::Square::Identity()));
+  EXPECT_FALSE(decoupled.factor(2, Decoupled<double>::Square::Identity()));
 }
 
 }  // namespace
