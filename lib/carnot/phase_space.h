@@ -36,12 +36,15 @@ template <class System, class T>
                                         Vector<T, System::kAlgebraic>& y,
                                         Vector<T, 2 * System::kDof>& z_dot) {
   constexpr int n = System::kDof;
+  Vector<T, n> q;
+  Vector<T, n> p;
+  for (int i = 0; i < n; ++i) q[i] = z[i];
+  for (int i = 0; i < n; ++i) p[i] = z[n + i];
   Rate<T, n> rate;
-  const RateStatus status = system.rate(
-      t, Vector<T, n>(z.template head<n>()), Vector<T, n>(z.template tail<n>()), y, rate);
+  const RateStatus status = system.rate(t, q, p, y, rate);
   if (status != RateStatus::kOk) return status;
-  z_dot.template head<n>() = rate.q_dot;
-  z_dot.template tail<n>() = rate.p_dot;
+  for (int i = 0; i < n; ++i) z_dot[i] = rate.q_dot[i];
+  for (int i = 0; i < n; ++i) z_dot[n + i] = rate.p_dot[i];
   return status;
 }
 
@@ -58,7 +61,7 @@ RateStatus phase_jacobian(const System& system,
   Vector<J, System::kAlgebraic> warm = unseeded<J>(y);
   const RateStatus status = phase_rate(system, J(t), seeded(z), warm, rate);
   if (status != RateStatus::kOk) return status;
-  for (int i = 0; i < m; ++i) jacobian.row(i) = rate[i].v.transpose();
+  jacobian = tangents(rate);
   return status;
 }
 

@@ -174,7 +174,7 @@ class RungeKutta {
   void set_stages(const Block& block, Stages& u) const {
     if (coupled()) {
       stage_arguments(tableau_, increments_, block.z, u);
-    } else {
+    } else if constexpr (s == kAnyStages) {
       u.col(block.first) = stage_argument(tableau_, increments_, block.z, block.first);
     }
   }
@@ -298,10 +298,16 @@ class RungeKutta {
 
   // Fixed point. True when the stages have settled.
   bool iterate(const Block& block, StepReport& report) {
-    block.of(stages_).setConstant(std::numeric_limits<T>::max());
+    for (int i = 0; i < kSize; ++i) {
+      for (int j = block.begin(); j < block.end(); ++j) {
+        stages_(i, j) = std::numeric_limits<T>::max();
+      }
+    }
     if constexpr (kRows) {
-      times_ = (block.t + block.h * tableau_.c.array()).matrix();
-      weights_ = block.h * tableau_.omega;
+      for (int j = 0; j < s; ++j) {
+        times_[j] = block.t + block.h * tableau_.c[j];
+        weights_[j] = block.h * tableau_.omega[j];
+      }
     }
     return stop_ > T(0) ? iterate_to_tolerance(block, report) : iterate_to_round_off(block, report);
   }

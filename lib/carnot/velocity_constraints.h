@@ -265,11 +265,12 @@ class VelocityConstraints {
     if constexpr (HasFrameGradient<Scene>) {
       out.p_dot = -scene_.frame_gradient(q, p, u);
     } else {
-      const Vector<T, kDof> excess = p - product(scene_.mass(q), out.q_dot);
+      Vector<T, kDof> excess = product(scene_.mass(q), out.q_dot);
+      for (int i = 0; i < kDof; ++i) excess[i] = p[i] - excess[i];
       const auto at = seeded(q);
       Vector<T, kDof> slope = kinetic_slope(at, out.q_dot);
       add_slope(scene_.frame(at), excess, u, slope);
-      out.p_dot = -slope;
+      for (int i = 0; i < kDof; ++i) out.p_dot[i] = -slope[i];
     }
     return status_of(out);
   }
@@ -306,7 +307,7 @@ class VelocityConstraints {
       const Vector<T, kMultipliers> lambda = y.template tail<kMultipliers>();
       add_slope(scene_.constraints(at), lambda, v, slope);
     }
-    out.p_dot = -slope;
+    for (int i = 0; i < kDof; ++i) out.p_dot[i] = -slope[i];
     return status_of(out);
   }
 
