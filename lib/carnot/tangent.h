@@ -64,7 +64,8 @@ class Tangent {
                                                step.algebraic(i),
                                                jacobian_[i]);
       if (status != RateStatus::kOk) return false;
-      jacobian_[i] *= step.last_step() * step.tableau().omega[i];
+      const T weight = step.last_step() * step.tableau().omega[i];
+      jacobian_[i] = weight * jacobian_[i];
     }
     return true;
   }
@@ -124,13 +125,16 @@ class Tangent {
 
   // sum += mu_ij dL_j.
   static void add_stage(const Step& step, int i, int j, const Square& increment, Square& sum) {
+    const T mu = step.tableau().mu(i, j);
     if (!step.tableau().partitioned) {
-      sum += step.tableau().mu(i, j) * increment;
+      sum += mu * increment;
       return;
     }
-    sum.template topRows<kDof>() += step.tableau().mu(i, j) * increment.template topRows<kDof>();
-    sum.template bottomRows<kDof>() +=
-        step.tableau().mu_p(i, j) * increment.template bottomRows<kDof>();
+    const T momentum_mu = step.tableau().mu_p(i, j);
+    for (int c = 0; c < kSize; ++c) {
+      for (int r = 0; r < kDof; ++r) sum(r, c) += mu * increment(r, c);
+      for (int r = kDof; r < kSize; ++r) sum(r, c) += momentum_mu * increment(r, c);
+    }
   }
 
   // First guess, as for the stages: extrapolated from the last step, or A_i dz.
@@ -168,7 +172,8 @@ class Tangent {
   // (I - A_i mu_ij) dL = A_i dz, all stages at once.
   bool solve(const Step& step, const Compensated<Square>& m) {
     for (int i = 0; i < count_; ++i) {
-      rhs(i) = jacobian_[i].lazyProduct(m.value);
+      increment_[i] = jacobian_[i].lazyProduct(m.value);
+      set_rhs(i, increment_[i]);
       for (int j = 0; j < count_; ++j) set_block(step, i, j, i, j, count_);
     }
     return lu(0, count_);
@@ -180,22 +185,21 @@ class Tangent {
       Square argument = m.compensation;
       for (int j = 0; j < i; ++j) add_stage(step, i, j, increment_[j], argument);
       argument += m.value;
-      if (step.tableau().coupling == Coupling::kExplicit) {
-        increment_[i] = jacobian_[i].lazyProduct(argument);
-        continue;
-      }
-      rhs(0) = jacobian_[i].lazyProduct(argument);
+      increment_[i] = jacobian_[i].lazyProduct(argument);
+      if (step.tableau().coupling == Coupling::kExplicit) continue;
+      set_rhs(0, increment_[i]);
       set_block(step, i, i, 0, 0, 1);
       if (!lu(i, 1)) return false;
     }
     return true;
   }
 
-  using RowMajor = Eigen::Matrix<T, kSize, kSize, Eigen::RowMajor>;
-
-  // Rows of block `row` of the right-hand sides.
-  Eigen::Map<RowMajor> rhs(int row) {
-    return Eigen::Map<RowMajor>(rhs_.data() + row * kSize * kSize);
+  // Block `block` of the right-hand sides.
+  void set_rhs(int block, const Square& value) {
+    T* to = rhs_.data() + block * kSize * kSize;
+    for (int r = 0; r < kSize; ++r) {
+      for (int c = 0; c < kSize; ++c) *to++ = value(r, c);
+    }
   }
 
   // The block of dL_j in the equation of dL_i, put at (row, column) of `blocks` blocks.
@@ -214,9 +218,12 @@ class Tangent {
   bool lu(int first, int blocks) {
     if (!lu_solve(kSize * blocks, matrix_.data(), kSize, rhs_.data())) return false;
     bool finite = true;
-    for (int i = 0; i < blocks; ++i) {
-      increment_[first + i] = rhs(i);
-      finite = finite && increment_[first + i].allFinite();
+    const T* from = rhs_.data();
+    for (int i = first; i < first + blocks; ++i) {
+      for (int r = 0; r < kSize; ++r) {
+        for (int c = 0; c < kSize; ++c) increment_[i](r, c) = *from++;
+      }
+      finite = finite && increment_[i].allFinite();
     }
     return finite;
   }
