@@ -2,9 +2,9 @@
 // matrix maps to one another: see decoupled_stages.h.
 #pragma once
 
+#include <Eigen/Jacobi>
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "carnot/scalar.h"
 #include "carnot/tableau.h"
@@ -91,19 +91,15 @@ struct StagePairs {
   // Rotates the combinations of both alike until those of `image` are orthogonal (one-sided
   // Jacobi).
   void orthogonalize(Basis& image, Basis& even) const {
-    using std::abs, std::sqrt;
     constexpr int kSweeps = 12;
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
       for (int q = 1; q < count; ++q) {
         for (int p = 0; p < q; ++p) {
-          const T mixed = dot(image[p], image[q]);
-          if (mixed == T(0)) continue;
-          const T tau = (dot(image[q], image[q]) - dot(image[p], image[p])) / (T(2) * mixed);
-          const T size = abs(tau) + sqrt(T(1) + tau * tau);
-          const T tangent = tau < T(0) ? T(-1) / size : T(1) / size;
-          const T cosine = T(1) / sqrt(T(1) + tangent * tangent);
-          rotate(cosine, tangent * cosine, image[p], image[q]);
-          rotate(cosine, tangent * cosine, even[p], even[q]);
+          Eigen::JacobiRotation<T> rotation;
+          rotation.makeJacobi(
+              dot(image[p], image[p]), dot(image[p], image[q]), dot(image[q], image[q]));
+          rotate(rotation.c(), rotation.s(), image[p], image[q]);
+          rotate(rotation.c(), rotation.s(), even[p], even[q]);
         }
       }
     }
