@@ -48,8 +48,9 @@ void add_model_options(CLI::App& app, RunOptions& options) {
   app.add_option("--set", options.set, "set a parameter of the scene (repeatable)")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
-  app.add_option(
-         "--method", options.method, "a name from `carnot methods` (gauss16; rattle where h(q) = 0 needs it)")
+  app.add_option("--method",
+                 options.method,
+                 "a name from `carnot methods` (gauss16; rattle where h(q) = 0 needs it)")
       ->type_name("NAME");
 }
 
