@@ -10,6 +10,7 @@
 #include <random>
 #include <vector>
 
+#include "carnot/shooting/classification.h"
 #include "carnot/shooting/conjugate_times.h"
 #include "carnot/shooting/geodesic.h"
 #include "scene_choice.h"
@@ -186,6 +187,29 @@ TEST(PlateBallQuaternion, RollsStraight) {
     EXPECT_NEAR(report.geodesics[0].action, distance * distance / 2, 1e-11);
     EXPECT_EQ(report.geodesics[0].label, Label::kLocallyMinimal);
     EXPECT_EQ(report.geodesics[0].abnormal, true);
+  }
+}
+
+// (1, 0; -2 j) moves nothing along it and may be added to p0: the path stays the same, and with it
+// that it is shortest, but with much of it there are conjugate times.
+TEST(PlateBallQuaternion, MultiplesOfAnAbnormalCovectorMislabelNothing) {
+  const double distance = 7;
+  const auto turned = turn(distance, 0, 1, 0);
+  std::vector<double> to{distance, 0};
+  to.insert(to.end(), turned.begin(), turned.end());
+  const BoundaryValueProblem problem = test::plate_ball_quaternion(to);
+  for (const double multiple : {-1.4, -80.0}) {
+    const std::vector<double> p0{distance + multiple, 0, 0, 0, -2 * multiple, 0};
+    Extremal extremal;
+    extremal.knots = knots_of(problem, p0, 1, 64);
+    extremal.geodesic.p0 = p0;
+    extremal.geodesic.plan = StepPlan::equal(0, 1, 128);
+    complete(problem, 0, extremal);
+    EXPECT_NEAR(extremal.knots.at(1)[0], distance, 1e-12);
+    EXPECT_EQ(extremal.geodesic.abnormal, true);
+    const bool conjugate = multiple < -10;
+    EXPECT_EQ(extremal.geodesic.morse_index.value_or(-1) > 0, conjugate);
+    EXPECT_EQ(extremal.geodesic.label, conjugate ? Label::kUnknown : Label::kLocallyMinimal);
   }
 }
 

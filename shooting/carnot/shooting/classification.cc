@@ -122,7 +122,9 @@ void set_label(const BoundaryValueProblem& problem,
   if (geodesic.family_dimension.value_or(0) > 0) {
     geodesic.label = Label::kSingular;
   } else if (inner > 0) {
-    geodesic.label = Label::kConjugatePassed;
+    // On an abnormal extremal the index depends on the multipliers: a minimum may be conjugate with
+    // some of them (Agrachev & Sachkov, Control Theory from the Geometric Viewpoint, 2004, ch. 20).
+    if (!geodesic.abnormal.value_or(false)) geodesic.label = Label::kConjugatePassed;
   } else if (conjugate.times.empty()) {
     geodesic.label = Label::kLocallyMinimal;
   }

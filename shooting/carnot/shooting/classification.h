@@ -12,8 +12,8 @@ void complete(const BoundaryValueProblem& problem, long samples, Extremal& extre
 // The same without samples and times: these are counted only, which is faster where there are many.
 void label(const BoundaryValueProblem& problem, Extremal& extremal);
 
-// The conjugate times of the extremal, computed once. Unknown with holonomic constraints, where
-// momenta along the rows of Dh move nothing.
+// The conjugate times of the extremal, computed once. Unknown with holonomic constraints that need
+// forces, where momenta along the rows of Dh move nothing.
 const ConjugateTimes& conjugate_times_of(const BoundaryValueProblem& problem, Extremal& extremal);
 
 }  // namespace carnot
