@@ -7,11 +7,13 @@
 #include <vector>
 
 #include "carnot/segment.h"
+#include "carnot/shooting/path.h"
 
 namespace carnot::apps {
 
-// Positions within 3 of the origin in each coordinate, angles within pi, uniformly; drawn again
-// where a singularity of the coordinates parts them from the origin.
+// Positions within 3 of the origin in each coordinate, angles within pi, uniformly, brought to the
+// manifold where there is one; drawn again where there is no such point, or a singularity of the
+// coordinates parts it from the origin.
 inline std::vector<double> random_target(const Segment& segment, std::uint64_t seed, int i) {
   constexpr double kReach = 3;
   std::seed_seq sequence{seed, seed >> 32U, static_cast<std::uint64_t>(i)};
@@ -24,7 +26,8 @@ inline std::vector<double> random_target(const Segment& segment, std::uint64_t s
       const double reach = coordinate.period > 0 ? std::numbers::pi : kReach;
       to.push_back(std::uniform_real_distribution<double>(-reach, reach)(random));
     }
-  } while (segment.chart(origin.data()) * segment.chart(to.data()) < 0);
+  } while (!bring_to_manifold(segment, to.data()) ||
+           segment.chart(origin.data()) * segment.chart(to.data()) < 0);
   return to;
 }
 

@@ -37,6 +37,12 @@ TEST(Stress, HoldsItsContract) {
   EXPECT_THAT(run({"stress", "unicycle", "--targets", "2"}).out, HasSubstr("2 (100.00 %)"));
 }
 
+TEST(Stress, GoesFromPointToPointOfAManifold) {
+  const auto json = run({"stress", "satellite-quaternion", "--targets", "20", "--json"}).json();
+  EXPECT_EQ(json["solved"], 20);
+  EXPECT_EQ(json["method"], "gauss16");
+}
+
 TEST(Stress, IsTheSameOnAnyNumberOfThreads) {
   const auto counts = [](const std::string& threads) {
     auto json = run({"stress",
@@ -75,7 +81,7 @@ TEST(Stress, CountsReasons) {
 TEST(Stress, RefusesBadInput) {
   const std::map<std::vector<std::string>, std::string> cases{
       {{"stress", "unicicle"}, "did you mean unicycle?"},
-      {{"stress", "rod-skate"}, "manifold"},
+      {{"stress", "rod-skate"}, "RATTLE"},
       {{"stress", "unicycle", "--targets", "0"}, "--targets '0'"},
       {{"stress", "unicycle", "--seed", "-1"}, "--seed"},
       {{"stress", "unicycle", "--set", "gamma=1"}, "--set"},

@@ -42,6 +42,7 @@ bool Search::run() {
     const int in_vain = options_.starts > 0 ? 0 : std::min(blocked_, kMaxBlocked * limit);
     return limit + in_vain - drawn_;
   };
+  if (near_) shoot_straight();
   int descents = 0;
   while (left() > 0 && !settled()) {
     const double share = static_cast<double>(drawn_) / (drawn_ + left());

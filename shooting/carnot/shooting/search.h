@@ -79,6 +79,8 @@ class Search {
   void relax_round(int count);
   // The same from momenta, where there is no transcription.
   void momentum_round(int count);
+  // Along the straight line, by polish.h; to near targets, whose paths are relaxed to others.
+  void shoot_straight();
   // From the path of least action, of those that Newton's method on the grid did not make discrete
   // extremals of.
   void shoot_along_relaxed(const std::vector<Candidate>& candidates);

@@ -48,6 +48,12 @@ void Search::relax_round(int count) {
   if (artefacts) intervals_ = std::min(2 * intervals_, kMaxIntervals);
 }
 
+void Search::shoot_straight() {
+  Path line{1, problem_.segment.dof, problem_.from, {}, {}};
+  line.q.insert(line.q.end(), problem_.to.begin(), problem_.to.end());
+  count_hit(add(shoot_along(problem_, options_, line)));
+}
+
 void Search::shoot_along_relaxed(const std::vector<Candidate>& candidates) {
   const Path* least = nullptr;
   double least_action = std::numeric_limits<double>::infinity();

@@ -103,6 +103,7 @@ Path wiggled_line(const BoundaryValueProblem& problem,
                               : problem.from[j] + s * (problem.to[j] - problem.from[j]);
       path.configuration(node)[j] = line + largest * wiggle;
     }
+    if (!end) (void)bring_to_manifold(problem.segment, path.configuration(node));
   }
   return path;
 }

@@ -11,7 +11,8 @@
 // the wiggle has size S (D/S)^e, e = 1/3, 1/2, 1 in turn: a displacement of size D that needs
 // brackets of order r costs a path of length D^(1/r). Where the straight line violates the
 // constraints and is short, e = 1 is hopeless and is left out. A wiggle that leaves the chart is
-// made smaller, unless the straight line does.
+// made smaller, unless the straight line does. Paths are brought to the manifold of holonomic
+// constraints.
 #pragma once
 
 #include <cstdint>

@@ -60,14 +60,15 @@ WarmStart::WarmStart(const BoundaryValueProblem& problem,
       p0_(checked(problem, p0, tolerance)),
       model_(problem, p0_) {
   constexpr double kFine = 0.1;
-  constexpr double kStricter = 0.01;
+  constexpr double kStricter = 0.01;  // the error of the check over that of the others
   constexpr double kArrives = 1e-6;
   if (!model_.invertible()) return;
   std::vector<double> start = problem.from;
   start.insert(start.end(), p0.begin(), p0.end());
   rough_ = plan_for(problem, start, roughness_);
   plan_ = plan_for(problem, start, kFine * tolerance);
-  check_ = StepPlan::equal(0, problem.time, 2 * plan_.count);
+  const double shorter = std::pow(kStricter, -1.0 / problem.segment.order);
+  check_ = StepPlan::equal(0, problem.time, std::lround(std::ceil(shorter * plan_.count)));
   check_.stop = kStricter * plan_.stop;
   ready_ = end_of(plan_, p0_, end_) &&
            largest_difference(end_.data(), problem.to.data(), problem.segment.dof) <= kArrives;

@@ -18,7 +18,7 @@ namespace carnot {
 
 struct WarmStartReport {
   bool converged = false;  // endpoint_error is within the tolerance
-  // max-norm of q(T) - to, of an integration with half the steps' length and stricter stages.
+  // max-norm of q(T) - to, of an integration with a hundredth of the error.
   double endpoint_error = std::numeric_limits<double>::infinity();
   int flows = 0;
 };
