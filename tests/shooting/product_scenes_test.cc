@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 #include <random>
@@ -173,6 +174,34 @@ TEST(SatelliteQuaternion, ConjugateTimesInClosedForm) {
     ASSERT_FALSE(result.times.empty());
     const double rate = std::hypot(body[0], body[1], body[2]);
     EXPECT_NEAR(result.times[0], 2 * kPi / rate, kTolerance);
+  }
+}
+
+// That form at t = 1, with w = |(w1, w2)| and r^2 = w^2 + c^2, ends at the target where
+//
+//   cos(r/2) + i (c/r) sin(r/2) = e^(ic/2) (q_w + i q_z),
+//
+// for one direction of (w1, w2) each. A grid of (w, c) has four roots with w <= 12: there |c| is
+// below 25, since (w/r) sin(r/2) = 0.48.
+TEST(SatelliteQuaternion, AllExtremalsInClosedForm) {
+  const std::complex<double> target(0.6, 0.64);
+  const std::array<double, 4> lengths{3.283059545, 5.165729352, 5.356600368, 11.459000414};
+  GeodesicOptions options;
+  options.all = true;
+  options.max_length = 12;
+  options.samples = 0;
+  const auto report =
+      find_geodesics(test::satellite_quaternion({target.real(), 0.48, 0, target.imag()}), options);
+  ASSERT_EQ(report.geodesics.size(), lengths.size());
+  for (std::size_t i = 0; i < lengths.size(); ++i) {
+    const Geodesic& geodesic = report.geodesics[i];
+    EXPECT_NEAR(geodesic.length.value_or(0), lengths[i], 1e-9);
+    const double w = std::hypot(geodesic.p0[1], geodesic.p0[2]) / 2;
+    const double c = geodesic.p0[3] / 2;
+    const double r = std::hypot(w, c);
+    const std::complex<double> turned(std::cos(r / 2), c / r * std::sin(r / 2));
+    EXPECT_LE(std::abs(turned - std::polar(1.0, c / 2) * target), 1e-10);
+    EXPECT_EQ(geodesic.label, i == 0 ? Label::kLocallyMinimal : Label::kConjugatePassed);
   }
 }
 

@@ -86,7 +86,8 @@ class Search {
   void shoot_along_relaxed(const std::vector<Candidate>& candidates);
   // Goes down from the best extremal, which is no minimum. False where that gives nothing better.
   bool descend_round();
-  // Energies from that of the shortest extremal to twice that, or to the longest one.
+  // Energies from that of the shortest extremal to twice that, or to the longest one; in every
+  // second round to that of the largest length, where one is asked for.
   void sweep_round(int round);
   // By multiple shooting from the trajectories themselves, those that Newton's method on the grid
   // did not make discrete extremals of: grids do not see what happens where the frame loses rank.

@@ -132,7 +132,9 @@ void Search::sweep_round(int round) {
     double& scale = sweep.momentum_scale[j];
     scale = std::max(scale, 0.3 * largest * natural.row(j).norm());
   }
-  longest = std::min(std::max(longest, std::sqrt(2.0) * shortest), options_.max_length);
+  longest = std::max(longest, std::sqrt(2.0) * shortest);
+  const bool farthest = round % 2 == 1 && std::isfinite(options_.max_length);
+  longest = farthest ? options_.max_length : std::min(longest, options_.max_length);
   const auto energy = [&](double length) {
     const double speed = length / problem_.time;
     return 0.5 * speed * speed;
