@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "carnot/segment.h"
-#include "carnot/shooting/path.h"
+#include "carnot/shooting/manifold.h"
 
 namespace carnot::apps {
 

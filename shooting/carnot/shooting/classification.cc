@@ -78,10 +78,6 @@ std::optional<int> family_dimension(const BoundaryValueProblem& problem,
   return moved == 0 ? std::optional<int>(0) : std::nullopt;
 }
 
-}  // namespace
-
-namespace {
-
 // Whether the path passes a singularity of the coordinates, as some do that move only one of them.
 // The tangent flow has a pole there, which numbers beyond it do not show.
 bool passes_singularity(const BoundaryValueProblem& problem, const Extremal& extremal) {

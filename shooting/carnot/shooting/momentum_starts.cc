@@ -4,6 +4,8 @@
 #include <cmath>
 #include <random>
 
+#include "carnot/shooting/manifold.h"
+
 namespace carnot {
 namespace {
 
@@ -43,11 +45,8 @@ std::vector<double> momentum_start(const BoundaryValueProblem& problem, std::uin
     const double factor = size * std::exp(magnitude(random));
     for (double& x : p) x = factor * normal(random);
   }
-  if (problem.segment.forced == 0) return p;
-  std::vector<double> z = problem.from;
-  z.insert(z.end(), p.begin(), p.end());
-  if (!problem.segment.project_on_manifold(0, z.data())) return {};
-  return {z.begin() + n, z.end()};
+  if (problem.segment.forced > 0 && !bring_to_manifold(problem, p)) return {};
+  return p;
 }
 
 }  // namespace carnot

@@ -23,15 +23,6 @@ void fill_momenta(const Segment& segment, double h, Path& path) {
   }
 }
 
-bool bring_to_manifold(const Segment& segment, double* q) {
-  if (segment.holonomic == 0) return true;
-  std::vector<double> z(q, q + segment.dof);
-  z.resize(2 * z.size(), 0.0);
-  if (!segment.project_on_manifold(0, z.data())) return false;
-  std::copy_n(z.begin(), segment.dof, q);
-  return true;
-}
-
 bool same_chart(const Segment& segment, const double* a, const double* b) {
   return segment.chart(a) * segment.chart(b) > 0;
 }

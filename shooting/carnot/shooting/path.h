@@ -26,10 +26,6 @@ struct Path {
 // sides say, D2 F_d and -D1 F_d. They agree on a discrete extremal.
 void fill_momenta(const Segment& segment, double h, Path& path);
 
-// Brings q to the nearest point of the manifold of holonomic constraints, where there are any.
-// False, with q as it was, where there is no such point.
-bool bring_to_manifold(const Segment& segment, double* q);
-
 // Whether no singularity of the coordinates parts two configurations, or one node of the path from
 // the next. A grid steps over it for little, and what it finds beyond has seldom to do with the
 // scene; so a path that is in one chart is kept there. Some geodesics do pass, those that move one

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <random>
 
+#include "carnot/shooting/manifold.h"
+
 namespace carnot {
 namespace {
 

@@ -10,6 +10,7 @@
 #include "carnot/shooting/dilation.h"
 #include "carnot/shooting/end_point.h"
 #include "carnot/shooting/knots.h"
+#include "carnot/shooting/manifold.h"
 
 namespace carnot {
 namespace {
@@ -28,12 +29,7 @@ std::vector<double> draw_momentum(const BoundaryValueProblem& problem,
   std::uniform_real_distribution<double> uniform(options.lowest, options.highest);
   std::vector<double> p(n), zero(n, 0.0), velocity(n), lambda(problem.segment.multipliers + 1);
   for (int j = 0; j < n; ++j) p[j] = options.momentum_scale[j] * normal(random);
-  if (problem.segment.holonomic > 0) {  // else it leaves the manifold
-    std::vector<double> z = problem.from;
-    z.insert(z.end(), p.begin(), p.end());
-    if (!problem.segment.project_on_manifold(0, z.data())) return {};
-    p.assign(z.begin() + n, z.end());
-  }
+  if (!bring_to_manifold(problem, p)) return {};
   const auto energy = [&](const std::vector<double>& at) {
     return problem.segment
         .evaluate(0, problem.from.data(), at.data(), velocity.data(), lambda.data())

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "carnot/shooting/end_point.h"
+#include "carnot/shooting/manifold.h"
 #include "carnot/shooting/multiple_shooting.h"
 #include "carnot/shooting/survey.h"
 
@@ -80,14 +81,6 @@ long enough_steps(const BoundaryValueProblem& problem,
   return steps;
 }
 
-// Brings p0 to the hidden constraint: the part that moves nothing is taken away.
-void project(const BoundaryValueProblem& problem, std::vector<double>& p0) {
-  std::vector<double> z = problem.from;
-  z.insert(z.end(), p0.begin(), p0.end());
-  if (!problem.segment.project_on_manifold(0, z.data())) return;
-  p0.assign(z.begin() + problem.segment.dof, z.end());
-}
-
 }  // namespace
 
 std::optional<Extremal> verify(const BoundaryValueProblem& problem,
@@ -115,7 +108,7 @@ std::optional<Extremal> verify(const BoundaryValueProblem& problem,
     reduce(problem, steps, aim, p0, tangent);
     extremal.singular =
         kernel_of(Units(problem, p0.data()), tangent).cols() > problem.segment.forced;
-    if (problem.segment.forced > 0) project(problem, p0);
+    if (problem.segment.forced > 0) (void)bring_to_manifold(problem, p0);
     extremal.knots = knots_of(problem, p0, 1, tighter);
     error = largest_difference(extremal.knots.at(1), problem.to.data(), problem.segment.dof);
   }
