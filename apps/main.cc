@@ -1,8 +1,8 @@
 // The `carnot` program.
 #include <algorithm>
 
-#include "interrupt.h"
 #include "program.h"
+#include "text/interrupt.h"
 
 int main(int argc, char** argv) {
   carnot::apps::watch_for_interrupts();

@@ -7,13 +7,13 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "arguments.h"
-#include "delivery.h"
-#include "interrupt.h"
-#include "nearest.h"
-#include "numbers.h"
-#include "subcommands.h"
-#include "version.h"
+#include "run/delivery.h"
+#include "run/subcommands.h"
+#include "text/arguments.h"
+#include "text/interrupt.h"
+#include "text/nearest.h"
+#include "text/numbers.h"
+#include "text/version.h"
 
 namespace carnot::apps {
 namespace {

@@ -24,7 +24,7 @@
 #include <string>
 #include <vector>
 
-#include "carnot/make_segment.h"
+#include "carnot/make_dynamics.h"
 #include "carnot/plots/series_plot.h"
 #include "carnot/scenes/unicycle.h"
 #include "carnot/shooting/ompl_state_space.h"
@@ -70,7 +70,7 @@ Plan make_plan() {
     bounds.setHigh(j, kRoom[2 * j + 1]);
   }
   const auto space = std::make_shared<carnot::SteeringStateSpace>(
-      carnot::SteeringFunction(carnot::make_segment(carnot::scenes::Unicycle{}), options), bounds);
+      carnot::SteeringFunction(carnot::make_dynamics(carnot::scenes::Unicycle{}), options), bounds);
   space->setLongestValidSegmentFraction(0.005);
   Plan plan;
   plan.si = std::make_shared<ob::SpaceInformation>(space);

@@ -1,11 +1,11 @@
-#include "arguments.h"
+#include "text/arguments.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
-#include "nearest.h"
+#include "text/nearest.h"
 
 namespace carnot::apps::arguments_test {
 namespace {

@@ -1,5 +1,5 @@
 // The right-hand sides by hand are those of the scenes, and the adaptive DOP853 is one.
-#include "benchmark_rates.h"
+#include "benchmark/benchmark_rates.h"
 
 #include <gtest/gtest.h>
 
@@ -9,13 +9,13 @@
 #include <random>
 #include <vector>
 
-#include "benchmark_dop853.h"
-#include "benchmark_reference.h"
-#include "carnot/phase_space.h"
+#include "benchmark/benchmark_dop853.h"
+#include "benchmark/benchmark_reference.h"
 #include "carnot/scenes/heisenberg.h"
 #include "carnot/scenes/vehicle.h"
 #include "carnot/scenes/vehicle_cosine.h"
-#include "carnot/system_of.h"
+#include "carnot/system/phase_space.h"
+#include "carnot/system/system_of.h"
 
 namespace carnot::apps::benchmark_rates_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "benchmark_reference.h"
+#include "benchmark/benchmark_reference.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "benchmark_cache.h"
+#include "benchmark/benchmark_cache.h"
 #include "command.h"
 #include "testing/reference.h"
 

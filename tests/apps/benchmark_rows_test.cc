@@ -1,4 +1,4 @@
-#include "benchmark_rows.h"
+#include "benchmark/benchmark_rows.h"
 
 #include <gtest/gtest.h>
 

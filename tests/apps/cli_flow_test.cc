@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "command.h"
-#include "version.h"
+#include "text/version.h"
 
 namespace carnot::apps::cli_flow_test {
 namespace {

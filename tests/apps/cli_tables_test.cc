@@ -4,7 +4,7 @@
 #include <set>
 
 #include "command.h"
-#include "version.h"
+#include "text/version.h"
 
 namespace carnot::apps::cli_tables_test {
 namespace {

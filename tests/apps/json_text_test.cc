@@ -1,11 +1,11 @@
-#include "json_text.h"
+#include "text/json_text.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "csv_text.h"
+#include "text/csv_text.h"
 
 namespace carnot::apps::json_text_test {
 namespace {

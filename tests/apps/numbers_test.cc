@@ -1,4 +1,4 @@
-#include "numbers.h"
+#include "text/numbers.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

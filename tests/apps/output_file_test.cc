@@ -1,4 +1,4 @@
-#include "output_file.h"
+#include "text/output_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "command.h"
-#include "progress_bar.h"
-#include "text_table.h"
+#include "text/progress_bar.h"
+#include "text/text_table.h"
 
 namespace carnot::apps::output_file_test {
 namespace {

@@ -7,11 +7,11 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "paper_circle.h"
-#include "paper_cosine.h"
-#include "paper_parts.h"
-#include "paper_separatrix.h"
-#include "scene_choice.h"
+#include "catalogue/scene_choice.h"
+#include "paper/paper_circle.h"
+#include "paper/paper_cosine.h"
+#include "paper/paper_parts.h"
+#include "paper/paper_separatrix.h"
 #include "testing/reference.h"
 
 namespace carnot::apps::paper_test {
@@ -52,7 +52,7 @@ TEST(Separatrix, APerturbationAtRestLagsByLogTwo) {
 // A run of Gauss 16 of the vehicle with these parameters, phi perturbed.
 Trajectory exact_run(const CircleMotion& motion, double perturbation, double time, long samples) {
   const double l = motion.length;
-  const Segment segment = find_scene("vehicle").make(
+  const Dynamics dynamics = find_scene("vehicle").make(
       {{"alpha", motion.alpha}, {"beta", motion.beta}, {"length", l}}, "gauss16");
   std::vector<double> z{l,
                         0,
@@ -63,7 +63,7 @@ Trajectory exact_run(const CircleMotion& motion, double perturbation, double tim
                         motion.turn * (l * l + motion.alpha),
                         motion.turn * motion.beta};
   PaperWork work({}, 1);
-  return work.flow(segment, StepPlan::of_length(0, time, 0.1), z, samples).trajectory;
+  return work.flow(dynamics, StepPlan::of_length(0, time, 0.1), z, samples).trajectory;
 }
 
 TEST(Separatrix, HalfwayTimeIsThatOfTheFlow) {
@@ -109,10 +109,10 @@ TEST(Work, StopsWhenItIsTold) {
 
 TEST(Work, TellsOfAFailedRun) {
   PaperWork work({}, 1);
-  const Segment segment = paper_segment("vehicle", "midpoint");
+  const Dynamics dynamics = paper_dynamics("vehicle", "midpoint");
   std::vector<double> z(8, std::nan(""));
   try {
-    work.flow(segment, StepPlan::equal(0, 1, 10), z);
+    work.flow(dynamics, StepPlan::equal(0, 1, 10), z);
     ADD_FAILURE();
   } catch (const std::runtime_error& error) {
     EXPECT_THAT(error.what(), HasSubstr("a run of vehicle by midpoint failed at t = 0"));
@@ -236,10 +236,10 @@ TEST(PaperReference, IsThatOfTheFile) {
   ASSERT_FALSE(file.is_null());
   for (const test::Json& value : file["scenes"]["heisenberg_MI"]["values"]) {
     if (value["T"] != "10") continue;
-    const Segment segment = paper_segment("heisenberg", "gauss16");
+    const Dynamics dynamics = paper_dynamics("heisenberg", "gauss16");
     std::vector<double> z{0, 0, 0, 0.1, 0.3, 1};
     PaperWork work({}, 1);
-    work.flow(segment, StepPlan::of_length(0, 10, 0.25), z);
+    work.flow(dynamics, StepPlan::of_length(0, 10, 0.25), z);
     for (std::size_t i = 0; i < 3; ++i) {
       EXPECT_NEAR(z[i], test::number(value["q"][i]), 16 * kEps);
       EXPECT_NEAR(z[i + 3], test::number(value["p"][i]), 16 * kEps);

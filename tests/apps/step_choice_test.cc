@@ -1,4 +1,4 @@
-#include "step_choice.h"
+#include "carnot/laws/step_choice.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "method_table.h"
-#include "scene_choice.h"
+#include "catalogue/method_table.h"
+#include "catalogue/scene_choice.h"
 
 namespace carnot::apps::step_choice_test {
 namespace {
@@ -17,17 +17,17 @@ using ::testing::HasSubstr;
 const std::vector<double> kStart{0, 0, 0, 0.1, 0.3, 1};
 constexpr double kTime = 10;
 
-Segment heisenberg(const std::string& method) { return find_scene("heisenberg").make({}, method); }
+Dynamics heisenberg(const std::string& method) { return find_scene("heisenberg").make({}, method); }
 
-std::vector<double> end_point(const Segment& segment, long count) {
+std::vector<double> end_point(const Dynamics& dynamics, long count) {
   std::vector<double> z = kStart;
-  EXPECT_TRUE(segment.flow(StepPlan::equal(0, kTime, count), z.data()).completed());
+  EXPECT_TRUE(dynamics.flow(StepPlan::equal(0, kTime, count), z.data()).completed());
   return z;
 }
 
-double error(const Segment& segment, long count) {
+double error(const Dynamics& dynamics, long count) {
   const auto exact = end_point(heisenberg("gauss16"), 200);
-  const auto z = end_point(segment, count);
+  const auto z = end_point(dynamics, count);
   double largest = 0;
   for (std::size_t i = 0; i < z.size(); ++i) {
     largest = std::max(largest, std::abs(z[i] - exact[i]));
@@ -39,15 +39,15 @@ TEST(ChooseSteps, ReachesTheToleranceButNotByFar) {
   for (const Method& method : methods()) {
     for (const double tolerance : {1e-4, 1e-8, 1e-12}) {
       if (method.order < 4 && tolerance < 1e-8) continue;  // beyond the cap
-      const Segment segment = heisenberg(method.name);
-      const StepChoice choice = choose_steps(segment, 0, kTime, kStart, tolerance);
+      const Dynamics dynamics = heisenberg(method.name);
+      const StepChoice choice = choose_steps(dynamics, 0, kTime, kStart, tolerance);
       ASSERT_EQ(choice.status, StepChoiceStatus::kOk) << method.name << choice.message;
-      EXPECT_LE(error(segment, choice.count), 2 * tolerance + 1e-13) << method.name;
+      EXPECT_LE(error(dynamics, choice.count), 2 * tolerance + 1e-13) << method.name;
       EXPECT_LE(choice.error, tolerance);
       EXPECT_GT(choice.evaluations, 0);
       // With two thirds of the steps the tolerance is missed (unless there were few to begin with).
       if (choice.count > 8) {
-        EXPECT_GT(error(segment, choice.count * 2 / 3), 0.5 * tolerance) << method.name;
+        EXPECT_GT(error(dynamics, choice.count * 2 / 3), 0.5 * tolerance) << method.name;
       }
     }
   }

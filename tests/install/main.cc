@@ -2,8 +2,8 @@
 //
 // Martinet's flat structure with a mass in z: M = I, g = (y^2/2, 0, -1), so z' = y^2 x'/2. No
 // frame, no names, no derivatives: only what a scene must have.
-#include <carnot/make_segment.h>
-#include <carnot/shooting/geodesic.h>
+#include <carnot/make_dynamics.h>
+#include <carnot/shooting/find_geodesics.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -37,7 +37,7 @@ double endpoint_error(const carnot::BoundaryValueProblem& problem,
                       const carnot::Geodesic& geodesic) {
   std::vector<double> z = problem.from;
   z.insert(z.end(), geodesic.p0.begin(), geodesic.p0.end());
-  const carnot::FlowReport report = problem.segment.flow(geodesic.plan, z.data());
+  const carnot::FlowReport report = problem.dynamics.flow(geodesic.plan, z.data());
   if (!report.completed()) return INFINITY;
   return std::hypot(z[0] - problem.to[0], z[1] - problem.to[1], z[2] - problem.to[2]);
 }
@@ -46,7 +46,7 @@ double endpoint_error(const carnot::BoundaryValueProblem& problem,
 
 int main() {
   const carnot::BoundaryValueProblem problem(
-      carnot::make_segment(Ramp{}), {0, 0.5, 0}, {1, 1, 0.4});
+      carnot::make_dynamics(Ramp{}), {0, 0.5, 0}, {1, 1, 0.4});
   const carnot::GeodesicReport report = carnot::find_geodesics(problem);
   if (report.status != carnot::GeodesicStatus::kConverged || report.geodesics.empty()) {
     std::cerr << "no geodesic: " << report.message << '\n';

@@ -1,5 +1,5 @@
 // Steps chosen by a trial: the error is about what was asked for.
-#include "carnot/automatic_flow.h"
+#include "carnot/flow/automatic_flow.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <limits>
 
-#include "carnot/gauss.h"
+#include "carnot/step/gauss.h"
+#include "testing/compiled_dynamics.h"
 #include "testing/runs.h"
-#include "testing/segments.h"
 
 namespace carnot::automatic_flow_test {
 namespace {
@@ -77,14 +77,14 @@ TEST(AutomaticFlow, ServesGaussMethodsOfOrderEightAndMore) {
   constexpr double kBeyond = 50;
   const std::array<double, 8> start = {1, 0.5, 0.3, 0.8, 0.7, 0.7, 0.5, 0.2};
   auto expected = start;
-  const Segment exact = make_segment(scenes::VehicleCosine{});
+  const Dynamics exact = make_dynamics(scenes::VehicleCosine{});
   ASSERT_TRUE(exact.flow(StepPlan::equal(0, 5, 200), expected.data()).completed());
   for (const char* method : {"gauss8", "gauss10", "gauss12", "gauss14", "gauss20", "gauss24"}) {
-    const Segment segment = make_segment(scenes::VehicleCosine{}, method);
-    ASSERT_TRUE(segment.has_automatic_flow()) << method;
+    const Dynamics dynamics = make_dynamics(scenes::VehicleCosine{}, method);
+    ASSERT_TRUE(dynamics.has_automatic_flow()) << method;
     for (const double tolerance : {1e-5, 1e-9}) {
       auto z = start;
-      const AutomaticFlow run = segment.automatic_flow(0, 5, tolerance, z.data());
+      const AutomaticFlow run = dynamics.automatic_flow(0, 5, tolerance, z.data());
       EXPECT_TRUE(run.reached) << method;
       EXPECT_LE((view<8>(z.data()) - view<8>(expected.data())).cwiseAbs().maxCoeff(),
                 kBeyond * tolerance)
@@ -92,7 +92,7 @@ TEST(AutomaticFlow, ServesGaussMethodsOfOrderEightAndMore) {
     }
   }
   for (const char* method : {"midpoint", "gauss4", "gauss6", "lobatto8", "radau9", "dop853"}) {
-    EXPECT_FALSE(make_segment(scenes::VehicleCosine{}, method).has_automatic_flow()) << method;
+    EXPECT_FALSE(make_dynamics(scenes::VehicleCosine{}, method).has_automatic_flow()) << method;
   }
 }
 

@@ -1,5 +1,5 @@
 // Many trajectories at once against one by one.
-#include "carnot/batch.h"
+#include "carnot/flow/batch.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <limits>
 #include <vector>
 
+#include "testing/compiled_dynamics.h"
 #include "testing/order.h"
 #include "testing/runs.h"
-#include "testing/segments.h"
 
 namespace carnot::batch_test {
 namespace {
@@ -31,12 +31,12 @@ double difference(const std::vector<double>& a, const std::vector<double>& b) {
 
 // Gauss at round-off against the explicit method, for counts that fill packs and that do not.
 TEST(Batch, TwoMethodsAgree) {
-  const Segment segment = make_segment(scenes::VehicleCosine{});
+  const Dynamics dynamics = make_dynamics(scenes::VehicleCosine{});
   for (const int count : {1, 7, 8, 9, 16, 25}) {
     auto exact = random_points(4, count, 3);
     auto fast = exact;
-    const BatchReport gauss = segment.flow_batch(StepPlan::equal(0, 4, 60), count, exact.data());
-    const BatchReport adaptive = segment.adaptive_batch(0, 4, 1e-11, count, fast.data());
+    const BatchReport gauss = dynamics.flow_batch(StepPlan::equal(0, 4, 60), count, exact.data());
+    const BatchReport adaptive = dynamics.adaptive_batch(0, 4, 1e-11, count, fast.data());
     EXPECT_EQ(gauss.completed, count);
     EXPECT_EQ(adaptive.completed, count);
     EXPECT_EQ(gauss.failed + adaptive.failed, 0);
@@ -49,14 +49,14 @@ TEST(Batch, TwoMethodsAgree) {
 // The error follows the tolerance: a method of order 8 whose steps are set by an estimate of order
 // 7, over six decades.
 TEST(Batch, ErrorFollowsTheTolerance) {
-  const Segment segment = make_segment(scenes::Vehicle{});
+  const Dynamics dynamics = make_dynamics(scenes::Vehicle{});
   auto exact = random_points(4, 8, 4);
   const auto start = exact;
-  (void)segment.flow_batch(StepPlan::equal(0, 5, 80), 8, exact.data());
+  (void)dynamics.flow_batch(StepPlan::equal(0, 5, 80), 8, exact.data());
   double last = 1;
   for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
     auto z = start;
-    EXPECT_EQ(segment.adaptive_batch(0, 5, tolerance, 8, z.data()).completed, 8);
+    EXPECT_EQ(dynamics.adaptive_batch(0, 5, tolerance, 8, z.data()).completed, 8);
     const double error = difference(exact, z);
     EXPECT_LE(error, 1000 * tolerance);
     EXPECT_LE(error, last / 10);
@@ -65,40 +65,40 @@ TEST(Batch, ErrorFollowsTheTolerance) {
 }
 
 TEST(Batch, BackwardsUndoesForwards) {
-  const Segment segment = make_segment(scenes::Unicycle{});
+  const Dynamics dynamics = make_dynamics(scenes::Unicycle{});
   const auto start = random_points(3, 8, 5);
   auto z = start;
-  (void)segment.adaptive_batch(0, 3, 1e-12, 8, z.data());
+  (void)dynamics.adaptive_batch(0, 3, 1e-12, 8, z.data());
   EXPECT_GE(difference(start, z), 0.1);
-  (void)segment.adaptive_batch(3, -3, 1e-12, 8, z.data());
+  (void)dynamics.adaptive_batch(3, -3, 1e-12, 8, z.data());
   EXPECT_LE(difference(start, z), 1e-9);
 }
 
 TEST(Batch, DoesNotDependOnTheThreads) {
-  const Segment segment = make_segment(scenes::VehicleCosine{});
+  const Dynamics dynamics = make_dynamics(scenes::VehicleCosine{});
   auto one = random_points(4, 37, 6);
   auto three = one;
   auto gauss_one = one;
   auto gauss_three = one;
-  (void)segment.adaptive_batch(0, 3, 1e-9, 37, one.data(), 1);
-  (void)segment.adaptive_batch(0, 3, 1e-9, 37, three.data(), 3);
+  (void)dynamics.adaptive_batch(0, 3, 1e-9, 37, one.data(), 1);
+  (void)dynamics.adaptive_batch(0, 3, 1e-9, 37, three.data(), 3);
   EXPECT_EQ(one, three);
-  (void)segment.flow_batch(StepPlan::equal(0, 3, 20), 37, gauss_one.data(), 1);
-  (void)segment.flow_batch(StepPlan::equal(0, 3, 20), 37, gauss_three.data(), 3);
+  (void)dynamics.flow_batch(StepPlan::equal(0, 3, 20), 37, gauss_one.data(), 1);
+  (void)dynamics.flow_batch(StepPlan::equal(0, 3, 20), 37, gauss_three.data(), 3);
   EXPECT_EQ(gauss_one, gauss_three);
 }
 
 // A trajectory that can't be followed becomes NaN, its neighbours are not touched.
 TEST(Batch, OneFailureStaysOne) {
-  const Segment segment = make_segment(scenes::VehicleCosine{});
+  const Dynamics dynamics = make_dynamics(scenes::VehicleCosine{});
   const auto start = random_points(4, 11, 7);
   auto alone = start;
   for (int i = 0; i < 11; ++i) {
-    (void)segment.adaptive_batch(0, 3, 1e-10, 1, alone.data() + 8 * i, 1);
+    (void)dynamics.adaptive_batch(0, 3, 1e-10, 1, alone.data() + 8 * i, 1);
   }
   auto z = start;
   z[8 * 4 + 2] = std::nan("");
-  const BatchReport report = segment.adaptive_batch(0, 3, 1e-10, 11, z.data(), 2);
+  const BatchReport report = dynamics.adaptive_batch(0, 3, 1e-10, 11, z.data(), 2);
   EXPECT_EQ(report.completed, 10);
   EXPECT_EQ(report.failed, 1);
   for (int i = 0; i < 11; ++i) {
@@ -113,7 +113,7 @@ TEST(Batch, OneFailureStaysOne) {
   }
   auto gauss = start;
   gauss[8 * 4 + 2] = std::nan("");
-  const BatchReport by_plan = segment.flow_batch(StepPlan::equal(0, 3, 30), 11, gauss.data());
+  const BatchReport by_plan = dynamics.flow_batch(StepPlan::equal(0, 3, 30), 11, gauss.data());
   EXPECT_EQ(by_plan.completed, 10);
   EXPECT_EQ(by_plan.failed, 1);
   EXPECT_TRUE(std::isnan(gauss[8 * 4]));

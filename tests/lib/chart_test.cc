@@ -1,4 +1,4 @@
-#include "carnot/chart.h"
+#include "carnot/scene/chart.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "carnot/gradient.h"
+#include "carnot/numerics/gradient.h"
 #include "carnot/scenes/satellite.h"
 #include "carnot/scenes/vehicle.h"
 

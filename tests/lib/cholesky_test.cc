@@ -1,4 +1,4 @@
-#include "carnot/cholesky.h"
+#include "carnot/numerics/cholesky.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <string>
 
-#include "carnot/gradient.h"
+#include "carnot/numerics/gradient.h"
 #include "testing/random_points.h"
 
 namespace carnot::cholesky_test {

@@ -1,4 +1,4 @@
-#include "carnot/coefficients.h"
+#include "carnot/numerics/coefficients.h"
 
 #include <gtest/gtest.h>
 

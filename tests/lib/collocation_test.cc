@@ -1,4 +1,4 @@
-#include "carnot/collocation.h"
+#include "carnot/tableau/collocation.h"
 
 #include <gtest/gtest.h>
 

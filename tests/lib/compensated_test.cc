@@ -1,4 +1,4 @@
-#include "carnot/compensated.h"
+#include "carnot/numerics/compensated.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "carnot/linear_algebra.h"
+#include "carnot/numerics/linear_algebra.h"
 #include "testing/random_points.h"
 
 namespace carnot::compensated_test {

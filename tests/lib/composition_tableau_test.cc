@@ -1,4 +1,4 @@
-#include "carnot/composition_tableau.h"
+#include "carnot/tableau/composition_tableau.h"
 
 #include <gtest/gtest.h>
 

@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "carnot/flow.h"
-#include "carnot/gauss.h"
-#include "carnot/tangent_flow.h"
-#include "carnot/velocity_constraints.h"
+#include "carnot/flow/flow.h"
+#include "carnot/flow/tangent_flow.h"
+#include "carnot/step/gauss.h"
+#include "carnot/system/velocity_constraints.h"
 #include "testing/control_forms.h"
 #include "testing/control_scene_list.h"
 #include "testing/order.h"

@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "carnot/optimal_control.h"
+#include "carnot/system/optimal_control.h"
 #include "testing/control_scene_list.h"
 #include "testing/random_points.h"
 

@@ -1,4 +1,4 @@
-#include "carnot/darboux.h"
+#include "carnot/numerics/darboux.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,11 +1,11 @@
 // Stage equations with one Jacobian: what the small systems say holds in the large one.
-#include "carnot/decoupled_stages.h"
+#include "carnot/step/decoupled_stages.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "carnot/methods.h"
+#include "carnot/tableau/methods.h"
 #include "testing/random_points.h"
 
 namespace carnot {

@@ -1,4 +1,4 @@
-#include "carnot/dop853_tableau.h"
+#include "carnot/tableau/dop853_tableau.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "carnot/flow.h"
+#include "carnot/flow/flow.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "carnot/gauss.h"
-#include "carnot/tangent_flow.h"
+#include "carnot/flow/tangent_flow.h"
+#include "carnot/step/gauss.h"
 #include "testing/counting_system.h"
 #include "testing/failing_scenes.h"
 #include "testing/runs.h"

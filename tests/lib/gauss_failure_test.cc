@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "carnot/gauss.h"
+#include "carnot/step/gauss.h"
 #include "testing/counting_system.h"
 #include "testing/failing_scenes.h"
 #include "testing/runs.h"

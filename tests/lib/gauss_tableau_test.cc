@@ -1,4 +1,4 @@
-#include "carnot/gauss_tableau.h"
+#include "carnot/tableau/gauss_tableau.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // One step: what it leaves behind, and Newton's fallback.
-#include "carnot/gauss.h"
+#include "carnot/step/gauss.h"
 
 #include <gtest/gtest.h>
 

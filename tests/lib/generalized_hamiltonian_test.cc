@@ -1,15 +1,15 @@
-#include "carnot/generalized_hamiltonian.h"
+#include "carnot/system/generalized_hamiltonian.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "carnot/flow.h"
-#include "carnot/gauss_tableau.h"
-#include "carnot/runge_kutta.h"
+#include "carnot/flow/flow.h"
+#include "carnot/flow/tangent_flow.h"
 #include "carnot/scenes/vehicle.h"
-#include "carnot/tangent_flow.h"
+#include "carnot/step/runge_kutta.h"
+#include "carnot/tableau/gauss_tableau.h"
 #include "testing/generalized_scenes.h"
 #include "testing/runs.h"
 

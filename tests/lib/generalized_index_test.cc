@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "carnot/generalized_hamiltonian.h"
 #include "carnot/scenes/heisenberg.h"
-#include "carnot/velocity_constraints.h"
+#include "carnot/system/generalized_hamiltonian.h"
+#include "carnot/system/velocity_constraints.h"
 #include "testing/generalized_scenes.h"
 #include "testing/order.h"
 

@@ -1,4 +1,4 @@
-#include "carnot/gradient.h"
+#include "carnot/numerics/gradient.h"
 
 #include <gtest/gtest.h>
 

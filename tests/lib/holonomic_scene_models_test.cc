@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-#include "carnot/scene_info.h"
+#include "carnot/scene/scene_info.h"
 #include "testing/random_points.h"
 #include "testing/reduced_scenes.h"
 #include "testing/scene_wrappers.h"

@@ -1,14 +1,14 @@
 // Holonomic constraints: derivatives by Jets, projections on the manifold, their failures.
-#include "carnot/holonomic.h"
+#include "carnot/system/holonomic.h"
 
 #include <gtest/gtest.h>
 
-#include "carnot/rattle_tangent.h"
 #include "carnot/scenes/rod_skate.h"
 #include "carnot/scenes/skate_on_sphere.h"
 #include "carnot/scenes/spherical_pendulum.h"
 #include "carnot/scenes/unicycle.h"
-#include "carnot/velocity_constraints.h"
+#include "carnot/step/rattle_tangent.h"
+#include "carnot/system/velocity_constraints.h"
 #include "testing/random_points.h"
 
 namespace carnot::holonomic_test {

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <vector>
 
-#include "carnot/gauss.h"
-#include "carnot/lagrangian_system.h"
+#include "carnot/flow/tangent_flow.h"
 #include "carnot/scenes/appell.h"
-#include "carnot/tangent_flow.h"
+#include "carnot/step/gauss.h"
+#include "carnot/system/lagrangian_system.h"
 #include "testing/order.h"
 
 namespace carnot::lagrangian_branch_test {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "carnot/lagrangian_system.h"
 #include "carnot/scenes/appell.h"
+#include "carnot/system/lagrangian_system.h"
 #include "testing/random_points.h"
 
 namespace carnot::lagrangian_failure_test {

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "carnot/flow.h"
-#include "carnot/gauss.h"
-#include "carnot/lagrangian_system.h"
+#include "carnot/flow/flow.h"
 #include "carnot/scenes/appell.h"
 #include "carnot/scenes/driven_pendulum.h"
 #include "carnot/scenes/relativistic_particle.h"
+#include "carnot/step/gauss.h"
+#include "carnot/system/lagrangian_system.h"
 #include "testing/random_points.h"
 
 namespace carnot::lagrangian_scenes_test {

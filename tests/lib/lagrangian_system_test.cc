@@ -1,6 +1,6 @@
 // Lagrangian scenes against the same scenes written with M(q) and G(q): point by point, and along
 // the flow.
-#include "carnot/lagrangian_system.h"
+#include "carnot/system/lagrangian_system.h"
 
 #include <gtest/gtest.h>
 
@@ -9,11 +9,11 @@
 #include <cmath>
 #include <string>
 
-#include "carnot/flow.h"
-#include "carnot/gauss.h"
+#include "carnot/flow/flow.h"
 #include "carnot/scenes/heisenberg.h"
 #include "carnot/scenes/heisenberg_group.h"
-#include "carnot/velocity_constraints.h"
+#include "carnot/step/gauss.h"
+#include "carnot/system/velocity_constraints.h"
 #include "testing/lagrangian_forms.h"
 #include "testing/random_points.h"
 #include "testing/scene_wrappers.h"

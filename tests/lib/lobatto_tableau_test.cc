@@ -1,4 +1,4 @@
-#include "carnot/lobatto_tableau.h"
+#include "carnot/tableau/lobatto_tableau.h"
 
 #include <gtest/gtest.h>
 

@@ -6,10 +6,10 @@
 #include <limits>
 #include <vector>
 
-#include "carnot/flow.h"
-#include "carnot/gauss_tableau.h"
-#include "carnot/generalized_hamiltonian.h"
-#include "carnot/runge_kutta.h"
+#include "carnot/flow/flow.h"
+#include "carnot/step/runge_kutta.h"
+#include "carnot/system/generalized_hamiltonian.h"
+#include "carnot/tableau/gauss_tableau.h"
 #include "testing/generalized_scenes.h"
 #include "testing/order.h"
 #include "testing/runs.h"

@@ -1,4 +1,4 @@
-#include "carnot/methods.h"
+#include "carnot/tableau/methods.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// The midpoint transcription through the calls behind a Segment.
-#include "carnot/midpoint_transcription.h"
+// The midpoint transcription through the calls behind a Dynamics.
+#include "carnot/transcription/midpoint_transcription.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <limits>
 #include <vector>
 
-#include "carnot/gauss.h"
-#include "carnot/system_of.h"
-#include "carnot/transcription_calls.h"
+#include "carnot/step/gauss.h"
+#include "carnot/system/system_of.h"
+#include "carnot/transcription/transcription_calls.h"
 #include "testing/control_scene_list.h"
 #include "testing/runs.h"
 
@@ -45,7 +45,7 @@ struct WeightedBrockett {
   }
 };
 
-// What a Segment points to, without its methods, which are slow to compile.
+// What a Dynamics points to, without its methods, which are slow to compile.
 template <class Scene>
 struct Calls {
   using System = decltype(make_system(Scene{}));
@@ -54,10 +54,10 @@ struct Calls {
   static const Calls& from(const void* opaque) { return *static_cast<const Calls*>(opaque); }
 
   bool midpoint(const double* qm, const double* v, double* terms, double* jacobian) const {
-    return segment_calls::midpoint<Calls>(this, qm, v, terms, jacobian);
+    return dynamics_calls::midpoint<Calls>(this, qm, v, terms, jacobian);
   }
   void discrete_lagrangian(double h, const double* x, double* gradient, double* hessian) const {
-    segment_calls::discrete_lagrangian<Calls>(this, h, x, gradient, hessian);
+    dynamics_calls::discrete_lagrangian<Calls>(this, h, x, gradient, hessian);
   }
 };
 
@@ -65,14 +65,14 @@ template <class Scene>
 class MidpointTest : public ::testing::Test {
  protected:
   // What is transcribed: the system itself, or a control problem without its controls.
-  using System = std::decay_t<decltype(segment_calls::transcription(make_system(Scene{})))>;
+  using System = std::decay_t<decltype(dynamics_calls::transcription(make_system(Scene{})))>;
   static constexpr int kDof = Scene::kDof;
   static constexpr int kMultipliers = System::kMultipliers;
   static constexpr int kTerms = kDof + kMultipliers + 1;
   static constexpr int kUnknowns = 2 * kDof + kMultipliers;
   using Unknowns = Vector<double, kUnknowns>;
 
-  const System system_ = segment_calls::transcription(make_system(test::uneven<Scene>()));
+  const System system_ = dynamics_calls::transcription(make_system(test::uneven<Scene>()));
   const Calls<Scene> calls_;
   test::Generator generator_{1};
 

@@ -1,11 +1,11 @@
-#include "carnot/optimal_control.h"
+#include "carnot/system/optimal_control.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "carnot/phase_space.h"
+#include "carnot/system/phase_space.h"
 #include "testing/control_forms.h"
 #include "testing/control_scene_list.h"
 #include "testing/random_points.h"

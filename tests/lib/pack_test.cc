@@ -1,5 +1,5 @@
 // Packs against plain numbers, lane by lane, in every width and with every kind of register.
-#include "carnot/pack.h"
+#include "carnot/numerics/pack.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <random>
 #include <vector>
 
-#include "carnot/gradient.h"
-#include "carnot/stumpff.h"
+#include "carnot/numerics/gradient.h"
+#include "carnot/numerics/stumpff.h"
 
 namespace carnot::pack_test {
 namespace {

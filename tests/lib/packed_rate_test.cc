@@ -1,12 +1,12 @@
 // Rates side by side against rates one by one.
-#include "carnot/packed_rate.h"
+#include "carnot/system/packed_rate.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "carnot/gauss.h"
+#include "carnot/step/gauss.h"
 #include "testing/more_scenes.h"
 #include "testing/runs.h"
 #include "testing/scene_wrappers.h"

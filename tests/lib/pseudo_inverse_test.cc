@@ -1,4 +1,4 @@
-#include "carnot/pseudo_inverse.h"
+#include "carnot/numerics/pseudo_inverse.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "carnot/radau_tableau.h"
+#include "carnot/tableau/radau_tableau.h"
 
 #include <gtest/gtest.h>
 

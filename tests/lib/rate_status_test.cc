@@ -5,7 +5,7 @@
 #include <limits>
 #include <set>
 
-#include "carnot/velocity_constraints.h"
+#include "carnot/system/velocity_constraints.h"
 #include "testing/failing_scenes.h"
 #include "testing/random_points.h"
 #include "testing/scene_list.h"

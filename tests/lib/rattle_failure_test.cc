@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
-#include "carnot/composition_tableau.h"
-#include "carnot/flow.h"
-#include "carnot/rattle.h"
+#include "carnot/flow/flow.h"
 #include "carnot/scenes/spherical_pendulum.h"
-#include "carnot/velocity_constraints.h"
+#include "carnot/step/rattle.h"
+#include "carnot/system/velocity_constraints.h"
+#include "carnot/tableau/composition_tableau.h"
 #include "testing/counting_system.h"
 
 namespace carnot::rattle_failure_test {

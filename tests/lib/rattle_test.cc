@@ -1,10 +1,10 @@
 // RATTLE on the rod with a skate and on the spherical pendulum: order, geometry, constraints, and
 // reference values found by other methods.
-#include "carnot/rattle.h"
+#include "carnot/step/rattle.h"
 
 #include <gtest/gtest.h>
 
-#include "carnot/audit.h"
+#include "carnot/flow/monitor.h"
 #include "testing/holonomic_laws.h"
 #include "testing/reference.h"
 
@@ -115,7 +115,7 @@ TEST(RattleTest, ActionHasTheOrderOfTheMethod) {
     test::Generator generator(11);
     auto z = PendulumRuns::random_start(generator);
     PendulumRuns::Method method(system, tableau);
-    Audit<PendulumRuns::Method> audit(system, 0, method, z);
+    Monitor<PendulumRuns::Method> audit(system, 0, method, z);
     const StepPlan plan = StepPlan::equal(0, 2, steps);
     const auto watch = [&](long i, const auto& step, const auto& node) {
       audit(plan.time(i + 1), step, node);

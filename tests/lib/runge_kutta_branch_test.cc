@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "carnot/lagrangian_system.h"
 #include "carnot/scenes/appell.h"
+#include "carnot/system/lagrangian_system.h"
 #include "testing/counting_system.h"
 #include "testing/method_runs.h"
 

@@ -1,13 +1,13 @@
 // One step of each family of methods: what it solves, what it costs, and one route to it against
 // another.
-#include "carnot/runge_kutta.h"
+#include "carnot/step/runge_kutta.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "carnot/gauss.h"
+#include "carnot/step/gauss.h"
 #include "testing/counting_system.h"
 #include "testing/method_runs.h"
 #include "testing/oscillator.h"

@@ -1,11 +1,11 @@
 // LU of small symmetric indefinite matrices, with rows of any units.
-#include "carnot/scaled_lu.h"
+#include "carnot/numerics/scaled_lu.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "carnot/gradient.h"
+#include "carnot/numerics/gradient.h"
 #include "testing/random_points.h"
 
 namespace carnot::scaled_lu_test {

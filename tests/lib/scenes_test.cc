@@ -7,8 +7,8 @@
 #include <set>
 #include <string>
 
-#include "carnot/flow.h"
-#include "carnot/gauss.h"
+#include "carnot/flow/flow.h"
+#include "carnot/step/gauss.h"
 #include "testing/reference.h"
 #include "testing/runs.h"
 

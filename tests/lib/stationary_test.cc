@@ -1,5 +1,5 @@
 // Newton's method for H_y = 0: systems with solutions in closed form, with two branches, with none.
-#include "carnot/stationary.h"
+#include "carnot/system/stationary.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "carnot/stumpff.h"
+#include "carnot/numerics/stumpff.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "carnot/gradient.h"
+#include "carnot/numerics/gradient.h"
 
 namespace carnot::stumpff_test {
 namespace {

@@ -1,13 +1,13 @@
 // The tangent of one step, for every kind of coupling, against the step itself.
-#include "carnot/tangent.h"
+#include "carnot/step/tangent.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
 
-#include "carnot/gauss.h"
-#include "carnot/tangent_flow.h"
+#include "carnot/flow/tangent_flow.h"
+#include "carnot/step/gauss.h"
 #include "testing/counting_system.h"
 #include "testing/method_runs.h"
 #include "testing/oscillator.h"

@@ -1,11 +1,11 @@
-#include "carnot/trajectory.h"
+#include "carnot/flow/trajectory.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "carnot/gauss.h"
+#include "carnot/step/gauss.h"
 #include "testing/runs.h"
 
 namespace carnot::trajectory_test {

@@ -1,4 +1,4 @@
-#include "carnot/velocity_constraints.h"
+#include "carnot/system/velocity_constraints.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Turns taken off angles: nothing is lost, and long runs keep H better.
-#include "carnot/winding.h"
+#include "carnot/flow/winding.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "carnot/scenes/vehicle.h"
-#include "testing/segments.h"
+#include "testing/compiled_dynamics.h"
 
 namespace carnot::winding_test {
 namespace {
@@ -74,15 +74,15 @@ TEST(Winding, CountsOnOverManyTurns) {
 // The vehicle going round and round: H as good after 1e4 turns as the round-off of as many steps,
 // and the angle comes out with all its turns.
 TEST(Winding, KeepsTheEnergyOfATurningVehicle) {
-  const Segment segment = make_segment(scenes::Vehicle{});
+  const Dynamics dynamics = make_dynamics(scenes::Vehicle{});
   const std::array<double, 8> start = {0, 0, 0.7, 1.2, 0.3, 0, 0.1, 1};
   constexpr long kSteps = 50000;
   constexpr double kStep = 0.2;
   const auto plan = StepPlan::of_length(0, kStep * kSteps, kStep);
   auto z = start;
   auto audited = start;
-  ASSERT_TRUE(segment.flow(plan, z.data()).completed());
-  const FlowSummary summary = segment.audited_flow(plan, audited.data(), {2, {}, {}});
+  ASSERT_TRUE(dynamics.flow(plan, z.data()).completed());
+  const FlowSummary summary = dynamics.monitored_flow(plan, audited.data(), {2, {}, {}});
   ASSERT_TRUE(summary.completed());
   EXPECT_EQ(z, audited);
   EXPECT_EQ(summary.trajectory.q.back()[3], z[3]);

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "carnot/make_segment.h"
+#include "carnot/make_dynamics.h"
 #include "carnot/scenes/unicycle.h"
 
 namespace carnot {
@@ -30,7 +30,7 @@ ob::RealVectorBounds box(unsigned dimensions) {
 SteeringFunction unicycle(bool mod_angles = true) {
   SteeringOptions options;
   options.mod_angles = mod_angles;
-  return SteeringFunction(make_segment(scenes::Unicycle{}), options);
+  return SteeringFunction(make_dynamics(scenes::Unicycle{}), options);
 }
 
 class OmplStateSpaceTest : public ::testing::Test {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "carnot/shooting/geodesic.h"
+#include "carnot/shooting/find_geodesics.h"
 #include "shooting/problems.h"
 
 namespace carnot {

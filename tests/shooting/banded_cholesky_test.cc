@@ -1,4 +1,4 @@
-#include "carnot/shooting/banded_cholesky.h"
+#include "carnot/shooting/linear/banded_cholesky.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "carnot/shooting/banded_lu.h"
+#include "carnot/shooting/linear/banded_lu.h"
 
 #include <gtest/gtest.h>
 

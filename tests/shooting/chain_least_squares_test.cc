@@ -1,4 +1,4 @@
-#include "carnot/shooting/chain_least_squares.h"
+#include "carnot/shooting/linear/chain_least_squares.h"
 
 #include <gtest/gtest.h>
 

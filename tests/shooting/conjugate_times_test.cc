@@ -1,4 +1,4 @@
-#include "carnot/shooting/conjugate_times.h"
+#include "carnot/shooting/extremal/conjugate_times.h"
 
 #include <gtest/gtest.h>
 

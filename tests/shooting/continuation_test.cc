@@ -8,6 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "carnot/shooting/find_geodesics.h"
 #include "shooting/problems.h"
 
 namespace carnot {
@@ -118,7 +119,7 @@ TEST(Continuation, InAParameterArrivesWhereSolvingAnewDoes) {
   const BoundaryValueProblem problem = test::vehicle({0, 0, 0, 0}, {2, 1, 0.5, 0.5});
   const ProblemLine line{[&](double s) {
     BoundaryValueProblem changed = problem;
-    changed.segment = test::vehicle_with_alpha(1 - 0.9 * s);
+    changed.dynamics = test::vehicle_with_alpha(1 - 0.9 * s);
     return changed;
   }};
   const ContinuationReport report = continue_geodesic(line, geodesic_of(problem));

@@ -1,5 +1,5 @@
 // Ways down from discrete extremals that are no minima.
-#include "carnot/shooting/descent.h"
+#include "carnot/shooting/path/descent.h"
 
 #include <gtest/gtest.h>
 
@@ -10,11 +10,11 @@
 #include <optional>
 #include <vector>
 
-#include "carnot/shooting/discrete_equations.h"
-#include "carnot/shooting/discrete_newton.h"
-#include "carnot/shooting/near_target.h"
-#include "carnot/shooting/relaxation.h"
-#include "carnot/shooting/starts.h"
+#include "carnot/shooting/path/discrete_equations.h"
+#include "carnot/shooting/path/discrete_newton.h"
+#include "carnot/shooting/path/relaxation.h"
+#include "carnot/shooting/search/near_target.h"
+#include "carnot/shooting/search/starts.h"
 #include "shooting/problems.h"
 
 namespace carnot {
@@ -34,12 +34,12 @@ std::optional<Path> relaxed(const BoundaryValueProblem& problem, std::uint64_t s
 }
 
 double action(const BoundaryValueProblem& problem, const Path& path) {
-  return discrete_action(problem.segment, problem.time / path.intervals, path);
+  return discrete_action(problem.dynamics, problem.time / path.intervals, path);
 }
 
 // Residual relative to the momenta.
 double residual(const BoundaryValueProblem& problem, const Path& path) {
-  DiscreteEquations equations(problem.segment, problem.time / path.intervals, path.intervals);
+  DiscreteEquations equations(problem.dynamics, problem.time / path.intervals, path.intervals);
   std::vector<double> values;
   const double largest = equations.evaluate(path, values, nullptr);
   double worst = 0;

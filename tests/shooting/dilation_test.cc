@@ -1,5 +1,5 @@
 // The flag of the admissible directions and its dilations.
-#include "carnot/shooting/dilation.h"
+#include "carnot/shooting/problem/dilation.h"
 
 #include <gtest/gtest.h>
 

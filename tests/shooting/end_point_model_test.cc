@@ -1,4 +1,4 @@
-#include "carnot/shooting/end_point_model.h"
+#include "carnot/shooting/steer/end_point_model.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <vector>
 
-#include "carnot/shooting/end_point.h"
-#include "carnot/shooting/geodesic.h"
+#include "carnot/shooting/find_geodesics.h"
+#include "carnot/shooting/shoot/end_point.h"
 #include "shooting/problems.h"
 
 namespace carnot {
@@ -24,7 +24,7 @@ struct Modelled {
     GeodesicOptions options;
     options.samples = 0;
     const std::vector<double> found = find_geodesics(problem, options).geodesics.at(0).p0;
-    p0 = Eigen::Map<const Vector>(found.data(), problem.segment.dof);
+    p0 = Eigen::Map<const Vector>(found.data(), problem.dynamics.dof);
   }
 
   Vector end(const Vector& change, Eigen::MatrixXd& jacobian) const {

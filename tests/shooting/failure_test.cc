@@ -1,5 +1,5 @@
 // Every way for a search to find nothing has its code.
-#include "carnot/shooting/failure.h"
+#include "carnot/shooting/search/failure.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,9 @@
 #include <set>
 #include <string>
 
-#include "carnot/make_segment.h"
-#include "carnot/shooting/polish.h"
+#include "carnot/make_dynamics.h"
+#include "carnot/shooting/find_geodesics.h"
+#include "carnot/shooting/search/polish.h"
 #include "shooting/problems.h"
 #include "testing/failing_scenes.h"
 
@@ -31,14 +32,14 @@ Reason reason_of(const BoundaryValueProblem& problem, const GeodesicOptions& opt
 Path straight_path(const BoundaryValueProblem& problem, int intervals) {
   Path path;
   path.intervals = intervals;
-  path.dof = problem.segment.dof;
-  path.lambda.assign(static_cast<std::size_t>(intervals) * problem.segment.transcribed, 0.0);
+  path.dof = problem.dynamics.dof;
+  path.lambda.assign(static_cast<std::size_t>(intervals) * problem.dynamics.transcribed, 0.0);
   for (int i = 0; i <= intervals; ++i) {
     for (int j = 0; j < path.dof; ++j) {
       path.q.push_back(problem.from[j] + i * (problem.to[j] - problem.from[j]) / intervals);
     }
   }
-  fill_momenta(problem.segment, problem.time / intervals, path);
+  fill_momenta(problem.dynamics, problem.time / intervals, path);
   return path;
 }
 
@@ -92,7 +93,7 @@ TEST(Failure, NotRefined) {
 // The straight line is a discrete extremal, but leads where the mass is negative.
 TEST(Failure, FlowFailed) {
   const BoundaryValueProblem problem(
-      make_segment(test::OneByOne<test::FadingMass>{}), {1, 0, 0}, {-1, 0, 0});
+      make_dynamics(test::OneByOne<test::FadingMass>{}), {1, 0, 0}, {-1, 0, 0});
   Reason reason = Reason::kNone;
   EXPECT_FALSE(polish(problem, {}, straight_path(problem, 32), &reason));
   EXPECT_EQ(reason, Reason::kFlowFailed);

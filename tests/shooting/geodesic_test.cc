@@ -1,6 +1,4 @@
 // Geodesics without a guess: known answers, one route against another, every failure path.
-#include "carnot/shooting/geodesic.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +7,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "carnot/shooting/problem_line.h"
+#include "carnot/shooting/find_geodesics.h"
+#include "carnot/shooting/problem/problem_line.h"
 #include "shooting/problems.h"
 
 namespace carnot {
@@ -295,7 +294,7 @@ TEST(Geodesic, CyclicCoordinatesCostNoDigits) {
     const GeodesicReport near = find(here);
     ASSERT_FALSE(near.geodesics.empty());
     BoundaryValueProblem there = here;
-    for (const int j : movable(here.segment.info)) {
+    for (const int j : movable(here.dynamics.info)) {
       there.from[j] += kFar;
       there.to[j] += kFar;
     }

@@ -1,5 +1,5 @@
 // The Jacobian of the extended equations against differences.
-#include "carnot/shooting/line_equations.h"
+#include "carnot/shooting/continue/line_equations.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // The equations of multiple shooting, and the two minimisers against each other.
-#include "carnot/shooting/multiple_shooting.h"
+#include "carnot/shooting/shoot/multiple_shooting.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "carnot/shooting/shooting_equations.h"
+#include "carnot/shooting/shoot/shooting_equations.h"
 #include "shooting/problems.h"
 
 namespace carnot {

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <utility>
 
-#include "carnot/make_segment.h"
-#include "scene_choice.h"
+#include "carnot/make_dynamics.h"
+#include "catalogue/scene_choice.h"
 
 namespace carnot::test {
 namespace {
@@ -53,16 +53,16 @@ struct Pendulum {
   }
 };
 
-Segment segment(std::string_view scene,
-                const apps::ParameterValues& parameters = {},
-                std::string_view method = default_method<Oscillator>()) {
+Dynamics dynamics(std::string_view scene,
+                  const apps::ParameterValues& parameters = {},
+                  std::string_view method = default_method<Oscillator>()) {
   return apps::find_scene(scene).make(parameters, std::string(method));
 }
 
 }  // namespace
 
 BoundaryValueProblem vehicle(std::vector<double> from, std::vector<double> to, double time) {
-  return {segment("vehicle"), std::move(from), std::move(to), time};
+  return {dynamics("vehicle"), std::move(from), std::move(to), time};
 }
 
 BoundaryValueProblem sideways() { return vehicle({0, 0, 0, 0}, {0, 1, 0, 0}); }
@@ -70,64 +70,64 @@ BoundaryValueProblem sideways() { return vehicle({0, 0, 0, 0}, {0, 1, 0, 0}); }
 BoundaryValueProblem straight_ahead() { return vehicle({0, 0, 0, 0}, {1, 0, 0, 0}); }
 
 BoundaryValueProblem long_vehicle(std::vector<double> from, std::vector<double> to, double length) {
-  return {segment("vehicle", {{"length", length}}), std::move(from), std::move(to)};
+  return {dynamics("vehicle", {{"length", length}}), std::move(from), std::move(to)};
 }
 
 BoundaryValueProblem stiff_vehicle(std::vector<double> to) {
   const apps::ParameterValues stiff = {{"alpha", 0.1}, {"beta", 0.02}, {"length", 2.5}};
-  return {segment("vehicle", stiff), {0, 0, 0, 0}, std::move(to)};
+  return {dynamics("vehicle", stiff), {0, 0, 0, 0}, std::move(to)};
 }
 
 BoundaryValueProblem vehicle_cosine(std::vector<double> from, std::vector<double> to, double time) {
-  return {segment("vehicle-cosine"), std::move(from), std::move(to), time};
+  return {dynamics("vehicle-cosine"), std::move(from), std::move(to), time};
 }
 
 BoundaryValueProblem heisenberg_group(std::vector<double> to, double time) {
-  return {segment("heisenberg-group"), {0, 0, 0}, std::move(to), time};
+  return {dynamics("heisenberg-group"), {0, 0, 0}, std::move(to), time};
 }
 
 BoundaryValueProblem martinet(std::vector<double> to) {
-  return {segment("martinet"), {0, 0, 0}, std::move(to)};
+  return {dynamics("martinet"), {0, 0, 0}, std::move(to)};
 }
 
 BoundaryValueProblem engel(std::vector<double> to) {
-  return {segment("engel"), {0, 0, 0, 0}, std::move(to)};
+  return {dynamics("engel"), {0, 0, 0, 0}, std::move(to)};
 }
 
 BoundaryValueProblem unicycle(std::vector<double> from, std::vector<double> to) {
-  return {segment("unicycle"), std::move(from), std::move(to)};
+  return {dynamics("unicycle"), std::move(from), std::move(to)};
 }
 
 BoundaryValueProblem grushin(std::vector<double> from, std::vector<double> to) {
-  return {segment("grushin"), std::move(from), std::move(to)};
+  return {dynamics("grushin"), std::move(from), std::move(to)};
 }
 
 BoundaryValueProblem bicycle(std::vector<double> to) {
-  return {segment("bicycle"), {0, 0, 0, 0}, std::move(to)};
+  return {dynamics("bicycle"), {0, 0, 0, 0}, std::move(to)};
 }
 
 BoundaryValueProblem satellite(std::vector<double> to) {
-  return {segment("satellite"), {0, 0, 0}, std::move(to)};
+  return {dynamics("satellite"), {0, 0, 0}, std::move(to)};
 }
 
 BoundaryValueProblem satellite_quaternion(std::vector<double> to) {
-  return {segment("satellite-quaternion"), {1, 0, 0, 0}, std::move(to)};
+  return {dynamics("satellite-quaternion"), {1, 0, 0, 0}, std::move(to)};
 }
 
 BoundaryValueProblem plate_ball_quaternion(std::vector<double> to) {
-  return {segment("plate-ball-quaternion"), {0, 0, 1, 0, 0, 0}, std::move(to)};
+  return {dynamics("plate-ball-quaternion"), {0, 0, 1, 0, 0, 0}, std::move(to)};
 }
 
 BoundaryValueProblem oscillator(std::vector<double> from, std::vector<double> to, double time) {
-  return {make_segment(Oscillator{}), std::move(from), std::move(to), time};
+  return {make_dynamics(Oscillator{}), std::move(from), std::move(to), time};
 }
 
 BoundaryValueProblem pendulum(double from, double to, double time) {
-  return {make_segment(Pendulum{}), {from}, {to}, time};
+  return {make_dynamics(Pendulum{}), {from}, {to}, time};
 }
 
-Segment vehicle_with_alpha(double alpha) { return segment("vehicle", {{"alpha", alpha}}); }
+Dynamics vehicle_with_alpha(double alpha) { return dynamics("vehicle", {{"alpha", alpha}}); }
 
-Segment vehicle_midpoint() { return segment("vehicle", {}, "midpoint"); }
+Dynamics vehicle_midpoint() { return dynamics("vehicle", {}, "midpoint"); }
 
 }  // namespace carnot::test

@@ -35,9 +35,9 @@ BoundaryValueProblem oscillator(std::vector<double> from, std::vector<double> to
 BoundaryValueProblem pendulum(double from, double to, double time);
 
 // The vehicle with beta = length = 1.
-Segment vehicle_with_alpha(double alpha);
+Dynamics vehicle_with_alpha(double alpha);
 
 // The midpoint rule on the vehicle.
-Segment vehicle_midpoint();
+Dynamics vehicle_midpoint();
 
 }  // namespace carnot::test

@@ -11,11 +11,11 @@
 #include <random>
 #include <vector>
 
-#include "carnot/shooting/classification.h"
-#include "carnot/shooting/conjugate_times.h"
-#include "carnot/shooting/geodesic.h"
-#include "carnot/shooting/starts.h"
-#include "scene_choice.h"
+#include "carnot/shooting/extremal/classification.h"
+#include "carnot/shooting/extremal/conjugate_times.h"
+#include "carnot/shooting/find_geodesics.h"
+#include "carnot/shooting/search/starts.h"
+#include "catalogue/scene_choice.h"
 #include "shooting/problems.h"
 
 namespace carnot {
@@ -47,12 +47,12 @@ std::vector<double> attitude(double psi, double theta, double phi) {
 // The scenes; the attitude is the last four coordinates of each.
 class ProductScenesTest : public ::testing::TestWithParam<const char*> {
  protected:
-  [[nodiscard]] Segment segment(const std::string& method) const {
+  [[nodiscard]] Dynamics dynamics(const std::string& method) const {
     return apps::find_scene(GetParam()).make({}, method);
   }
   // A phase point of the manifold.
   [[nodiscard]] std::vector<double> start() const {
-    const Segment flow = segment("gauss16");
+    const Dynamics flow = dynamics("gauss16");
     std::mt19937_64 random(5);
     std::normal_distribution<double> normal;
     std::vector<double> z(2 * flow.dof);
@@ -69,12 +69,12 @@ class ProductScenesTest : public ::testing::TestWithParam<const char*> {
 
 // |q|^2 and q.p are quadratic invariants, which Gauss methods keep.
 TEST_P(ProductScenesTest, StayOnTheManifoldWithoutForces) {
-  const Segment flow = segment("gauss16");
+  const Dynamics flow = dynamics("gauss16");
   EXPECT_EQ(flow.holonomic, 1);
   EXPECT_EQ(flow.forced, 0);
-  EXPECT_EQ(segment("rattle6").forced, 1);
+  EXPECT_EQ(dynamics("rattle6").forced, 1);
   std::vector<double> z = start();
-  const FlowSummary run = flow.audited_flow(StepPlan::equal(0, 100, 2000), z.data(), {});
+  const FlowSummary run = flow.monitored_flow(StepPlan::equal(0, 100, 2000), z.data(), {});
   ASSERT_TRUE(run.completed());
   EXPECT_LE(run.holonomic_error, 1e3 * kEpsilon);  // a random walk of 2000 steps
 }
@@ -83,8 +83,8 @@ TEST_P(ProductScenesTest, MoveAsRattleMovesThem) {
   constexpr double kTolerance = 1e-10;  // the error of rattle6
   std::vector<double> z = start();
   std::vector<double> by_rattle = z;
-  ASSERT_TRUE(segment("gauss16").flow(StepPlan::equal(0, 2, 40), z.data()).completed());
-  ASSERT_TRUE(segment("rattle6").flow(StepPlan::equal(0, 2, 2000), by_rattle.data()).completed());
+  ASSERT_TRUE(dynamics("gauss16").flow(StepPlan::equal(0, 2, 40), z.data()).completed());
+  ASSERT_TRUE(dynamics("rattle6").flow(StepPlan::equal(0, 2, 2000), by_rattle.data()).completed());
   for (std::size_t i = 0; i < z.size(); ++i) EXPECT_NEAR(z[i], by_rattle[i], kTolerance) << i;
 }
 
@@ -93,7 +93,7 @@ TEST_P(ProductScenesTest, TheSizeOfTheQuaternionMovesApart) {
   constexpr double kTolerance = 1e-13;
   constexpr double kSize = 1.7;
   constexpr double kOutward = 0.3;
-  const Segment flow = segment("gauss16");
+  const Dynamics flow = dynamics("gauss16");
   constexpr double kTime = 2;
   const StepPlan plan = StepPlan::equal(0, kTime, 64);
   std::vector<double> on = start();

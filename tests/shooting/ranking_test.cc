@@ -1,4 +1,4 @@
-#include "carnot/shooting/ranking.h"
+#include "carnot/shooting/extremal/ranking.h"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,13 @@
 // Discrete extremals on finer grids: order of the extrapolation, artefacts.
-#include "carnot/shooting/refinement.h"
+#include "carnot/shooting/path/refinement.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "carnot/shooting/discrete_newton.h"
-#include "carnot/shooting/relaxation.h"
-#include "carnot/shooting/starts.h"
+#include "carnot/shooting/path/discrete_newton.h"
+#include "carnot/shooting/path/relaxation.h"
+#include "carnot/shooting/search/starts.h"
 #include "shooting/problems.h"
 
 namespace carnot {

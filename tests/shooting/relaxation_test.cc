@@ -1,13 +1,13 @@
 // Relaxation and Newton's method on the midpoint transcription: the result is the midpoint rule.
-#include "carnot/shooting/relaxation.h"
+#include "carnot/shooting/path/relaxation.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "carnot/shooting/discrete_newton.h"
-#include "carnot/shooting/starts.h"
+#include "carnot/shooting/path/discrete_newton.h"
+#include "carnot/shooting/search/starts.h"
 #include "shooting/problems.h"
 
 namespace carnot {
@@ -51,7 +51,7 @@ TEST(Relaxation, KeepsTheEnds) {
 TEST(DiscreteNewton, SatisfiesTheMidpointRule) {
   BoundaryValueProblem problem = test::vehicle({0, 0, 0, 0}, {2, 1, 0.5, 0.5});
   const Path path = tightened(problem);
-  const Segment midpoint = test::vehicle_midpoint();
+  const Dynamics midpoint = test::vehicle_midpoint();
   std::vector<double> z(path.configuration(0), path.configuration(0) + 4);
   z.insert(z.end(), path.momentum(0), path.momentum(0) + 4);
   // Newton stopped at 1e-9 of the momenta; the flow magnifies that by |dz(1)/dz(0)|, about 1e2.

@@ -6,9 +6,9 @@
 #include <limits>
 #include <numbers>
 
-#include "carnot/shooting/discrete_newton.h"
-#include "carnot/shooting/geodesic.h"
-#include "carnot/shooting/starts.h"
+#include "carnot/shooting/find_geodesics.h"
+#include "carnot/shooting/path/discrete_newton.h"
+#include "carnot/shooting/search/starts.h"
 #include "shooting/problems.h"
 
 namespace carnot {
@@ -21,13 +21,13 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 BoundaryValueProblem sideways() { return test::bicycle({0, 1, 0, 0}); }
 
 TEST(SingularCoordinates, TheSegmentTellsWhereTheyAre) {
-  const Segment bicycle = sideways().segment;
+  const Dynamics bicycle = sideways().dynamics;
   for (const double delta : {-2.0, -0.5, 0.0, 1.5, 3.0}) {
     const std::vector<double> q{1, 2, 3, delta};
     EXPECT_NEAR(bicycle.chart(q.data()), std::cos(delta), 4 * kEpsilon);
   }
   const std::vector<double> anywhere{1, 2, 3, std::numbers::pi / 2};
-  EXPECT_EQ(test::sideways().segment.chart(anywhere.data()), 1);
+  EXPECT_EQ(test::sideways().dynamics.chart(anywhere.data()), 1);
 }
 
 // A turn about one axis of the body passes the singularity of the angles and is a geodesic. The
@@ -56,29 +56,29 @@ TEST(SingularCoordinates, PathsStayOnTheirSide) {
   int blocked = 0;
   for (int i = 0; i < 40; ++i) {
     Start start = make_start(problem, 0, i);
-    EXPECT_TRUE(in_one_chart(problem.segment, start.path)) << "start " << i;
+    EXPECT_TRUE(in_one_chart(problem.dynamics, start.path)) << "start " << i;
     relax(problem, start.relaxation, start.path);
-    EXPECT_TRUE(in_one_chart(problem.segment, start.path)) << "relaxed " << i;
+    EXPECT_TRUE(in_one_chart(problem.dynamics, start.path)) << "relaxed " << i;
     blocked += tighten(problem, {}, start.path).left_chart ? 1 : 0;
-    EXPECT_TRUE(in_one_chart(problem.segment, start.path)) << "tightened " << i;
+    EXPECT_TRUE(in_one_chart(problem.dynamics, start.path)) << "tightened " << i;
   }
   EXPECT_GT(blocked, 0);  // the wall is needed
 }
 
 TEST(SingularCoordinates, SkimmingIsTold) {
-  const Segment segment = sideways().segment;
+  const Dynamics dynamics = sideways().dynamics;
   const auto skims = [&](const std::vector<double>& angles) {
     Path path;
     path.intervals = static_cast<int>(angles.size()) - 1;
     path.dof = 4;
     for (const double delta : angles) path.q.insert(path.q.end(), {0, 0, 0, delta});
-    return skims_chart_end(segment, path);
+    return skims_chart_end(dynamics, path);
   };
   EXPECT_FALSE(skims({0, 0.5, 1, 0.5, 0}));
   EXPECT_TRUE(skims({0, 1, 1.5, 1, 0}));
   EXPECT_FALSE(skims({0, 1, 1.3, 1.4, 1.5}));  // an end may be near
   EXPECT_FALSE(
-      skims_chart_end(test::sideways().segment, Path{1, 4, {0, 0, 0, 0, 9, 9, 9, 9}, {}, {}}));
+      skims_chart_end(test::sideways().dynamics, Path{1, 4, {0, 0, 0, 0, 9, 9, 9, 9}, {}, {}}));
 }
 
 // Two of length 5.9131..., mirror images, and not those of length 5.9168...

@@ -1,4 +1,4 @@
-#include "carnot/shooting/starts.h"
+#include "carnot/shooting/search/starts.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "carnot/shooting/geodesic.h"
+#include "carnot/shooting/find_geodesics.h"
 #include "carnot/shooting/steering_function.h"
 #include "carnot/shooting/warm_start.h"
 #include "shooting/problems.h"
@@ -16,7 +16,7 @@ namespace {
 #ifdef CARNOT_TEST_COUNTS_MALLOC
 
 TEST(SteeringAllocationTest, KnownAnswersAllocateNothing) {
-  const SteeringFunction steer(test::unicycle({0, 0, 0}, {0, 0, 0}).segment);
+  const SteeringFunction steer(test::unicycle({0, 0, 0}, {0, 0, 0}).dynamics);
   const std::vector<double> a{0, 0, 0};
   const std::vector<double> b{1, 0.5, 1};
   std::vector<double> q(3);

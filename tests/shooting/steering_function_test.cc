@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "carnot/make_segment.h"
+#include "carnot/make_dynamics.h"
 #include "shooting/problems.h"
 #include "testing/failing_scenes.h"
 
@@ -33,7 +33,7 @@ MATCHER_P(DiffersBy, allowed, "") {
 }
 
 const SteeringFunction& unicycle() {
-  static const SteeringFunction kSteer(test::unicycle({0, 0, 0}, {0, 0, 0}).segment);
+  static const SteeringFunction kSteer(test::unicycle({0, 0, 0}, {0, 0, 0}).dynamics);
   return kSteer;
 }
 
@@ -168,7 +168,7 @@ TEST(SteeringFunctionTest, PathsEndWhereAskedAndAreContinuous) {
 TEST(SteeringFunctionTest, OnTheCoverATurnIsAWay) {
   SteeringOptions options;
   options.mod_angles = false;
-  const SteeringFunction steer(test::unicycle({0, 0, 0}, {0, 0, 0}).segment, options);
+  const SteeringFunction steer(test::unicycle({0, 0, 0}, {0, 0, 0}).dynamics, options);
   EXPECT_NEAR(steer.distance(Pose{0, 0, 0}, Pose{0, 0, 2 * kPi}), 2 * kPi, kTolerance);
   EXPECT_NEAR(unicycle().distance(Pose{0, 0, -3}, Pose{0, 0, 3}), 2 * kPi - 6, kTolerance);
   EXPECT_NEAR(steer.distance(Pose{0, 0, -3}, Pose{0, 0, 3}), 6, kTolerance);
@@ -200,16 +200,16 @@ TEST(SteeringFunctionTest, AlternativesAreDistinctAndOrdered) {
 TEST(SteeringFunctionTest, OtherScenes) {
   SteeringOptions options;
   options.seed = 1;  // with 0 the search ends at a way that is 0.4 % longer
-  const SteeringFunction vehicle(test::sideways().segment, options);
+  const SteeringFunction vehicle(test::sideways().dynamics, options);
   EXPECT_NEAR(vehicle.distance(Pose{0, 0, 0, 0}, Pose{0, 1, 0, 0}), 6.739121872, 1e-9);
   expect_continuous(vehicle, {1, 1, 2, 2}, {1.5, 1.2, 2.3, 2});
-  const SteeringFunction group(test::heisenberg_group({1, 0, 0}).segment);
+  const SteeringFunction group(test::heisenberg_group({1, 0, 0}).dynamics);
   EXPECT_NEAR(group.distance(Pose{0, 0, 0}, Pose{0, 0, 1}), std::sqrt(4 * kPi), 1e-9);
   expect_continuous(group, {0.2, 0.1, 0}, {1, 0.5, 0.4}, 2);
 }
 
 TEST(SteeringFunctionTest, ManyThreadsGetTheSameAnswers) {
-  const SteeringFunction steer(test::unicycle({0, 0, 0}, {0, 0, 0}).segment);
+  const SteeringFunction steer(test::unicycle({0, 0, 0}, {0, 0, 0}).dynamics);
   constexpr int kThreads = 4;
   const std::vector<Pose> poses{{0, 0, 0}, {1, 0.3, 0.4}, {0, 0.7, 2}, {-1, 0.2, -0.6}};
   std::vector<std::vector<double>> answers(kThreads);
@@ -236,7 +236,7 @@ TEST(SteeringFunctionTest, ManyThreadsGetTheSameAnswers) {
 TEST(SteeringFunctionTest, MemoryChangesNoAnswer) {
   SteeringOptions options;
   options.memory = 1;
-  const SteeringFunction forgetful(test::unicycle({0, 0, 0}, {0, 0, 0}).segment, options);
+  const SteeringFunction forgetful(test::unicycle({0, 0, 0}, {0, 0, 0}).dynamics, options);
   const Pose a{0, 0, 0};
   const Pose b{0.5, 0.5, 1};
   const Pose c{1, 0, -1};
@@ -248,7 +248,7 @@ TEST(SteeringFunctionTest, MemoryChangesNoAnswer) {
 TEST(SteeringFunctionTest, SearchesThatFailHaveTheirCode) {
   SteeringOptions options;
   options.tolerance = 1e-22;
-  const SteeringFunction steer(test::sideways().segment, options);
+  const SteeringFunction steer(test::sideways().dynamics, options);
   const Steering way = steer.steer(Pose{0, 0, 0, 0}, Pose{0, 1, 0, 0});
   EXPECT_FALSE(way.found());
   EXPECT_EQ(way.reason(), Reason::kBeyondDouble);
@@ -277,7 +277,7 @@ TEST(SteeringFunctionTest, RefusalsHaveAReason) {
   fails(unicycle(), {0, 0}, "2 components, the scene has 3");
   fails(unicycle(), {0, NAN, 0}, "not a finite number");
   fails(unicycle(), {0, INFINITY, 0}, "not a finite number");
-  fails(SteeringFunction(make_segment(test::OneByOne<test::DependentRows>{})),
+  fails(SteeringFunction(make_dynamics(test::OneByOne<test::DependentRows>{})),
         {0, 0, 1},
         "linearly dependent");
   const Pose b{1, 0, 0};
@@ -288,7 +288,7 @@ TEST(SteeringFunctionTest, RefusalsHaveAReason) {
 }
 
 TEST(SteeringFunctionTest, RefusesBadOptions) {
-  const Segment segment = test::unicycle({0, 0, 0}, {0, 0, 0}).segment;
+  const Dynamics dynamics = test::unicycle({0, 0, 0}, {0, 0, 0}).dynamics;
   const auto with = [](auto set) {
     SteeringOptions options;
     set(options);
@@ -299,7 +299,7 @@ TEST(SteeringFunctionTest, RefusesBadOptions) {
                                      with([](auto& o) { o.tolerance = 0; }),
                                      with([](auto& o) { o.threads = -1; }),
                                      with([](auto& o) { o.resolution = NAN; })}) {
-    EXPECT_THROW(SteeringFunction(segment, bad), std::invalid_argument);
+    EXPECT_THROW(SteeringFunction(dynamics, bad), std::invalid_argument);
   }
   EXPECT_THROW((void)unicycle().alternatives(Pose{0, 0, 0}, Pose{1, 0, 0}, 0),
                std::invalid_argument);

@@ -1,4 +1,4 @@
-#include "carnot/shooting/symmetry.h"
+#include "carnot/shooting/extremal/symmetry.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <numbers>
 #include <vector>
 
-#include "carnot/shooting/problem_line.h"
-#include "carnot/shooting/verification.h"
+#include "carnot/shooting/extremal/verification.h"
+#include "carnot/shooting/problem/problem_line.h"
 #include "shooting/problems.h"
 
 namespace carnot {
@@ -26,12 +26,12 @@ void expect_partners(const BoundaryValueProblem& problem,
   const std::vector<ProblemSymmetry> list = symmetries_of(problem);
   EXPECT_EQ(list.size(), symmetries);
   for (const ProblemSymmetry& symmetry : list) {
-    const Knots image = partner(problem.segment.info, symmetry, extremal->knots);
+    const Knots image = partner(problem.dynamics.info, symmetry, extremal->knots);
     const auto other = verify(problem, image, 32, kTolerance);
     ASSERT_TRUE(other);
     const double action = extremal->geodesic.action;
     EXPECT_NEAR(other->geodesic.action, action, 1e-10 * action);
-    const Knots back = partner(problem.segment.info, symmetry, image);
+    const Knots back = partner(problem.dynamics.info, symmetry, image);
     for (int j = 0; j < extremal->knots.dof; ++j) {  // each is its own inverse
       EXPECT_NEAR(back.p0()[j], extremal->knots.p0()[j], 1e-9);
     }
@@ -48,24 +48,24 @@ TEST(Symmetry, MovableCoordinatesLeaveTheHamiltonianAlone) {
                                               test::engel({0, 0, 0, 1}),
                                               test::heisenberg_group({0, 0, 1}),
                                               test::satellite({1, 0, 0})}) {
-    const Segment& segment = problem.segment;
-    const std::vector<int> movable_ones = movable(segment.info);
+    const Dynamics& dynamics = problem.dynamics;
+    const std::vector<int> movable_ones = movable(dynamics.info);
     EXPECT_FALSE(movable_ones.empty());
     std::vector<double> q{0.3, 0.4, 0.2, 0.1};
     std::vector<double> p{0.7, -0.3, 1.1, 0.4};
-    q.resize(segment.dof);
-    p.resize(segment.dof);
-    std::vector<double> velocity(segment.dof), lambda(segment.multipliers + 1);
+    q.resize(dynamics.dof);
+    p.resize(dynamics.dof);
+    std::vector<double> velocity(dynamics.dof), lambda(dynamics.multipliers + 1);
     const auto energy = [&](const std::vector<double>& at) {
-      return segment.evaluate(0, at.data(), p.data(), velocity.data(), lambda.data()).hamiltonian;
+      return dynamics.evaluate(0, at.data(), p.data(), velocity.data(), lambda.data()).hamiltonian;
     };
-    for (int j = 0; j < segment.dof; ++j) {
+    for (int j = 0; j < dynamics.dof; ++j) {
       std::vector<double> moved = q;
       moved[j] += 0.37;
       const bool is_movable =
           std::find(movable_ones.begin(), movable_ones.end(), j) != movable_ones.end();
       const double change = std::abs(energy(moved) - energy(q));
-      EXPECT_EQ(change <= kRoundOff * energy(q), is_movable) << segment.info.name << " " << j;
+      EXPECT_EQ(change <= kRoundOff * energy(q), is_movable) << dynamics.info.name << " " << j;
     }
   }
 }

@@ -1,15 +1,16 @@
 // Verification, classification and the search for all extremals.
-#include "carnot/shooting/verification.h"
+#include "carnot/shooting/find_geodesics.h"
+#include "carnot/shooting/extremal/verification.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "carnot/shooting/classification.h"
-#include "carnot/shooting/end_point.h"
-#include "carnot/shooting/survey.h"
-#include "carnot/shooting/sweep.h"
+#include "carnot/shooting/extremal/classification.h"
+#include "carnot/shooting/search/sweep.h"
+#include "carnot/shooting/shoot/end_point.h"
+#include "carnot/shooting/shoot/survey.h"
 #include "shooting/problems.h"
 
 namespace carnot {
@@ -32,7 +33,7 @@ TEST(Verification, AcceptsWhatArrives) {
   // The error that is reported is that of an integration afresh.
   std::vector<double> z = problem.from;
   z.insert(z.end(), extremal->geodesic.p0.begin(), extremal->geodesic.p0.end());
-  ASSERT_TRUE(problem.segment.flow(extremal->geodesic.plan, z.data()).completed());
+  ASSERT_TRUE(problem.dynamics.flow(extremal->geodesic.plan, z.data()).completed());
   EXPECT_EQ(largest_difference(z.data(), problem.to.data(), 4), extremal->geodesic.endpoint_error);
 }
 

@@ -1,5 +1,5 @@
 // Angles modulo their periods.
-#include "carnot/shooting/windings.h"
+#include "carnot/shooting/problem/windings.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "carnot/shooting/geodesic.h"
+#include "carnot/shooting/find_geodesics.h"
 #include "shooting/problems.h"
 
 namespace carnot {

@@ -5,8 +5,8 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "carnot/linear_algebra.h"
-#include "carnot/scalar.h"
+#include "carnot/numerics/linear_algebra.h"
+#include "carnot/numerics/scalar.h"
 #include "carnot/scenes/satellite.h"
 
 namespace carnot::test {

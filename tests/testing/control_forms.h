@@ -2,9 +2,9 @@
 // the core take another route to the same answer.
 #pragma once
 
-#include "carnot/optimal_control.h"
 #include "carnot/scenes/heisenberg.h"
 #include "carnot/scenes/unicycle.h"
+#include "carnot/system/optimal_control.h"
 
 namespace carnot::test {
 

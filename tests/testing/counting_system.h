@@ -1,8 +1,8 @@
 // Systems that look on, or fail on purpose. Their state is mutable: for one thread, in tests only.
 #pragma once
 
-#include "carnot/index_one_system.h"
-#include "carnot/velocity_constraints.h"
+#include "carnot/system/index_one_system.h"
+#include "carnot/system/velocity_constraints.h"
 
 namespace carnot::test {
 

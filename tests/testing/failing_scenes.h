@@ -1,8 +1,8 @@
 // Scenes that break an assumption of the core somewhere, for tests of the failure codes.
 #pragma once
 
-#include "carnot/linear_algebra.h"
-#include "carnot/scalar.h"
+#include "carnot/numerics/linear_algebra.h"
+#include "carnot/numerics/scalar.h"
 
 namespace carnot::test {
 

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "carnot/generalized_hamiltonian_scene.h"
-#include "carnot/gradient.h"
-#include "carnot/lu.h"
+#include "carnot/numerics/gradient.h"
+#include "carnot/numerics/lu.h"
+#include "carnot/scene/generalized_hamiltonian_scene.h"
 #include "testing/random_points.h"
 
 namespace carnot::test {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "carnot/methods.h"
-#include "carnot/tangent_flow.h"
+#include "carnot/flow/tangent_flow.h"
+#include "carnot/tableau/methods.h"
 #include "testing/runs.h"
 
 namespace carnot::test {

@@ -8,9 +8,9 @@
 #include <limits>
 #include <vector>
 
-#include "carnot/composition_tableau.h"
-#include "carnot/rattle_tangent.h"
-#include "carnot/tangent_flow.h"
+#include "carnot/flow/tangent_flow.h"
+#include "carnot/step/rattle_tangent.h"
+#include "carnot/tableau/composition_tableau.h"
 #include "testing/order.h"
 #include "testing/random_points.h"
 #include "testing/reduced_scenes.h"

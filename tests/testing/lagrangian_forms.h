@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "carnot/linear_algebra.h"
-#include "carnot/scalar.h"
+#include "carnot/numerics/linear_algebra.h"
+#include "carnot/numerics/scalar.h"
 #include "carnot/scenes/vehicle.h"
 
 namespace carnot::test {

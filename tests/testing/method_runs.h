@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <string>
 
-#include "carnot/methods.h"
-#include "carnot/runge_kutta.h"
+#include "carnot/step/runge_kutta.h"
+#include "carnot/tableau/methods.h"
 #include "testing/runs.h"
 
 namespace carnot::test {

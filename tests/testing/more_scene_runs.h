@@ -1,8 +1,8 @@
 // gauss8 with its tangent on each of MoreScenes, compiled once for the tests of the flows.
 #pragma once
 
-#include "carnot/gauss.h"
-#include "carnot/tangent_flow.h"
+#include "carnot/flow/tangent_flow.h"
+#include "carnot/step/gauss.h"
 #include "testing/geometry_laws.h"
 #include "testing/more_scenes.h"
 

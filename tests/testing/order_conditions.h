@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "carnot/tableau.h"
+#include "carnot/tableau/tableau.h"
 
 namespace carnot::test {
 

@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "carnot/gauss.h"
 #include "carnot/scenes/vehicle_cosine.h"
+#include "carnot/step/gauss.h"
 #include "testing/order.h"
 #include "testing/runs.h"
 

@@ -1,7 +1,7 @@
 // The harmonic oscillator as a system of its own, without algebraic variables: H = (p^2 + k q^2)/2.
 #pragma once
 
-#include "carnot/index_one_system.h"
+#include "carnot/system/index_one_system.h"
 
 namespace carnot::test {
 

@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "carnot/linear_algebra.h"
+#include "carnot/numerics/linear_algebra.h"
 
 namespace carnot::test {
 

@@ -4,8 +4,7 @@
 
 #include <cmath>
 
-#include "carnot/holonomic.h"
-#include "carnot/quaternion.h"
+#include "carnot/numerics/quaternion.h"
 #include "carnot/scenes/plate_ball.h"
 #include "carnot/scenes/plate_ball_quaternion.h"
 #include "carnot/scenes/rod_skate.h"
@@ -13,7 +12,8 @@
 #include "carnot/scenes/satellite_quaternion.h"
 #include "carnot/scenes/skate_on_sphere.h"
 #include "carnot/scenes/spherical_pendulum.h"
-#include "carnot/velocity_constraints.h"
+#include "carnot/system/holonomic.h"
+#include "carnot/system/velocity_constraints.h"
 
 namespace carnot::test {
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "carnot/linear_algebra.h"
+#include "carnot/numerics/linear_algebra.h"
 
 #ifndef CARNOT_SOURCE_DIR
 #define CARNOT_SOURCE_DIR "."

@@ -2,7 +2,7 @@
 // laws of geometric integration must fail on it.
 #pragma once
 
-#include "carnot/gauss.h"
+#include "carnot/step/gauss.h"
 
 namespace carnot::test {
 

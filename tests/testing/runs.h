@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "carnot/flow.h"
-#include "carnot/velocity_constraints.h"
+#include "carnot/flow/flow.h"
+#include "carnot/system/velocity_constraints.h"
 #include "testing/random_points.h"
 #include "testing/scene_list.h"
 

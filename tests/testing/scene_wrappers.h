@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "carnot/velocity_constraints.h"
+#include "carnot/system/velocity_constraints.h"
 
 namespace carnot::test {
 

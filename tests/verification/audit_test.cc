@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "carnot/methods.h"
-#include "laws.h"
-#include "method_audit.h"
-#include "scene_choice.h"
+#include "carnot/laws/laws.h"
+#include "carnot/tableau/methods.h"
+#include "catalogue/scene_choice.h"
+#include "verify/method_audit.h"
 
 namespace carnot::apps {
 namespace {
@@ -44,7 +44,7 @@ TEST_P(AuditTest, OrderIsTheSlope) {
   ASSERT_LE(reference.error, 100 * kEps);
   for (const Method& method : methods_of(subject_)) {
     SCOPED_TRACE(method.name);
-    const OrderLaw law = measure_order(subject_.segment(method.name), reference);
+    const OrderLaw law = measure_order(subject_.dynamics(method.name), reference);
     if (method.order > kHighestOrder) {
       EXPECT_FALSE(resolved(law, method.order));
       continue;
@@ -66,8 +66,8 @@ TEST_P(AuditTest, SymplecticMethodsAloneKeepTheForm) {
   constexpr double kRoundOff = 50 * kEps;
   for (const Method& method : methods_of(subject_)) {
     SCOPED_TRACE(method.name);
-    const double defect =
-        measure_symplecticity(subject_.segment(method.name), subject_.start, subject_.step, kSteps);
+    const double defect = measure_symplecticity(
+        subject_.dynamics(method.name), subject_.start, subject_.step, kSteps);
     if (method.symplectic) {
       EXPECT_LE(defect, kRoundOff);
     } else {
@@ -81,7 +81,7 @@ TEST_P(AuditTest, SymmetricMethodsAloneRunBackwards) {
   for (const Method& method : methods_of(subject_)) {
     SCOPED_TRACE(method.name);
     const ReversalLaw law =
-        measure_reversal(subject_.segment(method.name), subject_.start, subject_.step, kSteps);
+        measure_reversal(subject_.dynamics(method.name), subject_.start, subject_.step, kSteps);
     if (method.symmetric) {
       EXPECT_LE(law.adjoint, kRoundOff);
       EXPECT_FALSE(law.mirrored > kRoundOff);  // NaN where flipping p is no reversal
@@ -98,7 +98,7 @@ TEST_P(AuditTest, ConstraintsHoldToRoundOff) {
   for (const Method& method : methods_of(subject_)) {
     SCOPED_TRACE(method.name);
     const EnergyLaw law = measure_energy(
-        subject_.segment(method.name), subject_.start, subject_.step, 2 * kSteps, Progress());
+        subject_.dynamics(method.name), subject_.start, subject_.step, 2 * kSteps, Progress());
     EXPECT_LE(law.constraint_error, kRoundOff);
     EXPECT_LE(law.holonomic_error, kRoundOff);
   }
@@ -125,14 +125,14 @@ TEST(ProductScenes, KeepTheLawsOfEveryMethodThatSuits) {
     EXPECT_FALSE(subject.entry->suits(*find_method("radau5")));
     for (const Method& method : methods_of(subject)) {
       SCOPED_TRACE(method.name);
-      const Segment segment = subject.segment(method.name);
-      EXPECT_LE(measure_symplecticity(segment, subject.start, subject.step, kSteps), kRoundOff);
+      const Dynamics dynamics = subject.dynamics(method.name);
+      EXPECT_LE(measure_symplecticity(dynamics, subject.start, subject.step, kSteps), kRoundOff);
       const EnergyLaw law =
-          measure_energy(segment, subject.start, subject.step, 2 * kSteps, Progress());
+          measure_energy(dynamics, subject.start, subject.step, 2 * kSteps, Progress());
       EXPECT_LE(law.constraint_error, kRoundOff);
       EXPECT_LE(law.holonomic_error, kRoundOff);
       if (method.order > kResolved) continue;
-      EXPECT_TRUE(resolved(measure_order(segment, reference), method.order));
+      EXPECT_TRUE(resolved(measure_order(dynamics, reference), method.order));
     }
   }
 }
@@ -142,7 +142,7 @@ TEST(AuditOrder, IsResolvedUpToTwelve) {
   const ReferenceRun reference = audit_reference(subject);
   for (const char* name : {"gauss10", "gauss12"}) {
     const Method& method = *find_method(name);
-    EXPECT_TRUE(resolved(measure_order(subject.segment(name), reference), method.order)) << name;
+    EXPECT_TRUE(resolved(measure_order(subject.dynamics(name), reference), method.order)) << name;
   }
 }
 
@@ -157,7 +157,7 @@ class LongRunTest : public ::testing::TestWithParam<LongRun> {};
 TEST_P(LongRunTest, EnergyErrorForgetsTheTime) {
   constexpr long kManySteps = 100000;
   const AuditSubject subject = subject_of(GetParam().scene);
-  const EnergyLaw law = measure_energy(subject.segment(GetParam().method),
+  const EnergyLaw law = measure_energy(subject.dynamics(GetParam().method),
                                        subject.start,
                                        subject.energy_step,
                                        kManySteps,
@@ -166,7 +166,7 @@ TEST_P(LongRunTest, EnergyErrorForgetsTheTime) {
   EXPECT_EQ(law.report.steps, kManySteps);
   EXPECT_GT(law.largest, 1e4 * kEps) << "the step is too small to show anything";
   EXPECT_LE(law.growth, 1.25);  // after the first tenth
-  const bool autonomous = subject.segment(GetParam().method).autonomous;
+  const bool autonomous = subject.dynamics(GetParam().method).autonomous;
   EXPECT_EQ(std::isnan(law.correlation), !autonomous);
   if (!autonomous) return;  // the growth of H - H0 - integral of H_t tells
   EXPECT_LT(std::abs(law.correlation), 0.02);
@@ -190,7 +190,7 @@ TEST(LongRun, EnergyDriftsWithoutSymplecticity) {
   const AuditSubject subject = subject_of("heisenberg");
   for (const char* name : {"radau5", "radau9", "dop853"}) {
     const EnergyLaw law = measure_energy(
-        subject.segment(name), subject.start, subject.energy_step, 10000, Progress());
+        subject.dynamics(name), subject.start, subject.energy_step, 10000, Progress());
     EXPECT_GT(law.growth, 5) << name;
     EXPECT_LT(law.correlation, -0.9) << name;
   }
@@ -201,13 +201,13 @@ TEST(MidpointConstraint, HoldsForTheMidpointRuleAlone) {
   const AuditSubject subject = subject_of("vehicle");
   const auto measured = [&](const char* method) {
     return measure_midpoint_constraint(
-        subject.segment(method), subject.start, subject.step, kSteps);
+        subject.dynamics(method), subject.start, subject.step, kSteps);
   };
   EXPECT_LE(measured("midpoint"), 100 * kEps);
   EXPECT_GT(measured("gauss4"), 1e-6);
   const AuditSubject drift = subject_of("pendulum");  // no transcription
   EXPECT_TRUE(std::isnan(
-      measure_midpoint_constraint(drift.segment("midpoint"), drift.start, drift.step, kSteps)));
+      measure_midpoint_constraint(drift.dynamics("midpoint"), drift.start, drift.step, kSteps)));
 }
 
 // A method that claims too much, or too little, is found out.
@@ -243,7 +243,7 @@ TEST(MethodAudit, SaysWhatWasNotMeasured) {
   EXPECT_TRUE(std::isnan(audit.reversal.adjoint));
   EXPECT_EQ(audit.symplecticity_verdict, Verdict::kFails);
   EXPECT_FALSE(audit.as_declared());
-  EXPECT_TRUE(measure_order(subject.segment("gauss4"), ReferenceRun()).errors.empty());
+  EXPECT_TRUE(measure_order(subject.dynamics("gauss4"), ReferenceRun()).errors.empty());
 }
 
 TEST(FitLine, IsExactOnALine) {

@@ -6,9 +6,9 @@
 #include <limits>
 #include <vector>
 
-#include "carnot/audit.h"
-#include "carnot/flow.h"
-#include "carnot/gauss.h"
+#include "carnot/flow/flow.h"
+#include "carnot/flow/monitor.h"
+#include "carnot/step/gauss.h"
 #include "testing/order.h"
 #include "testing/runs.h"
 
@@ -82,7 +82,7 @@ TYPED_TEST(InvariantsTest, ConstraintsHoldAtStagesAndNodes) {
   for (const long steps : {20L, 200L}) {
     Gauss<typename TestFixture::System, 3> method(this->system_);
     auto z = test::random_state<n>(this->generator_);
-    Audit<Gauss<typename TestFixture::System, 3>> audit(this->system_, 0, method, z);
+    Monitor<Gauss<typename TestFixture::System, 3>> audit(this->system_, 0, method, z);
     const StepPlan plan = StepPlan::equal(0, 10, steps);
     const auto watch = [&](long i, const auto& step, const auto& node) {
       audit(plan.time(i + 1), step, node);

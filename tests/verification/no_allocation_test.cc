@@ -6,9 +6,9 @@
 #include <memory>
 #include <vector>
 
-#include "carnot/gauss.h"
-#include "carnot/methods.h"
-#include "carnot/tangent_flow.h"
+#include "carnot/flow/tangent_flow.h"
+#include "carnot/step/gauss.h"
+#include "carnot/tableau/methods.h"
 #include "testing/allocation_counter.h"
 #include "testing/runs.h"
 

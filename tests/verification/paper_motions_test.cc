@@ -6,8 +6,8 @@
 #include <limits>
 #include <numbers>
 
-#include "carnot/flow.h"
-#include "carnot/gauss.h"
+#include "carnot/flow/flow.h"
+#include "carnot/step/gauss.h"
 #include "testing/runs.h"
 
 namespace carnot::paper_motions_test {

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "carnot/flow.h"
-#include "carnot/gauss.h"
+#include "carnot/flow/flow.h"
+#include "carnot/step/gauss.h"
 #include "testing/runs.h"
 
 namespace carnot::reference_test {

@@ -8,12 +8,12 @@
 #include <random>
 #include <vector>
 
-#include "carnot/gauss.h"
+#include "carnot/flow/winding.h"
 #include "carnot/scenes/heisenberg.h"
 #include "carnot/scenes/vehicle.h"
-#include "carnot/velocity_constraints.h"
-#include "carnot/winding.h"
-#include "scene_choice.h"
+#include "carnot/step/gauss.h"
+#include "carnot/system/velocity_constraints.h"
+#include "catalogue/scene_choice.h"
 
 namespace carnot {
 namespace {
@@ -64,7 +64,7 @@ double mean_square(const std::vector<double>& errors) {
 // Root mean square of the largest |H - H0|/H0 over `steps` steps of the program's own flow.
 template <class Scene>
 double drift(const Scene& scene, long steps) {
-  const Segment segment = apps::find_scene(scene.info().name).make({}, "gauss16");
+  const Dynamics dynamics = apps::find_scene(scene.info().name).make({}, "gauss16");
   const VelocityConstraints<Scene> system(scene);
   std::vector<double> errors;
   for (int i = 0; i < 4; ++i) {
@@ -72,7 +72,7 @@ double drift(const Scene& scene, long steps) {
     auto z = near(scene, generator);
     const double start = static_cast<double>(energy(system, z));
     const auto plan = StepPlan::of_length(0, kStep * static_cast<double>(steps), kStep);
-    const FlowSummary summary = segment.audited_flow(plan, z.value.data(), {});
+    const FlowSummary summary = dynamics.monitored_flow(plan, z.value.data(), {});
     if (!summary.completed()) return INFINITY;
     errors.push_back(summary.energy_drift / std::abs(start));
   }

@@ -19,9 +19,9 @@
 #include <array>
 #include <cmath>
 
-#include "carnot/linear_algebra.h"
-#include "carnot/scalar.h"
-#include "carnot/scene_info.h"
+#include "carnot/numerics/linear_algebra.h"
+#include "carnot/numerics/scalar.h"
+#include "carnot/scene/scene_info.h"
 
 namespace carnot::scenes {
 

@@ -10,10 +10,10 @@
 // geometry, in New Directions in Applied Mathematics (1982).
 #pragma once
 
-#include "carnot/linear_algebra.h"
-#include "carnot/scalar.h"
-#include "carnot/scene_info.h"
-#include "carnot/stumpff.h"
+#include "carnot/numerics/linear_algebra.h"
+#include "carnot/numerics/scalar.h"
+#include "carnot/numerics/stumpff.h"
+#include "carnot/scene/scene_info.h"
 
 namespace carnot::scenes {
 

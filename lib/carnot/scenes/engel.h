@@ -18,9 +18,9 @@
 // Source: Ardentov & Sachkov, Sbornik: Mathematics 202 (2011).
 #pragma once
 
-#include "carnot/linear_algebra.h"
-#include "carnot/scalar.h"
-#include "carnot/scene_info.h"
+#include "carnot/numerics/linear_algebra.h"
+#include "carnot/numerics/scalar.h"
+#include "carnot/scene/scene_info.h"
 
 namespace carnot::scenes {
 

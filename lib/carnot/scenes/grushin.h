@@ -11,10 +11,10 @@
 
 #include <cmath>
 
-#include "carnot/linear_algebra.h"
-#include "carnot/scalar.h"
-#include "carnot/scene_info.h"
-#include "carnot/stumpff.h"
+#include "carnot/numerics/linear_algebra.h"
+#include "carnot/numerics/scalar.h"
+#include "carnot/numerics/stumpff.h"
+#include "carnot/scene/scene_info.h"
 
 namespace carnot::scenes {
 

@@ -5,9 +5,9 @@
 // Invariants: H, p_z, x p_y - y p_x.
 #pragma once
 
-#include "carnot/linear_algebra.h"
-#include "carnot/scalar.h"
-#include "carnot/scene_info.h"
+#include "carnot/numerics/linear_algebra.h"
+#include "carnot/numerics/scalar.h"
+#include "carnot/scene/scene_info.h"
 
 namespace carnot::scenes {
 

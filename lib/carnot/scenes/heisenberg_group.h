@@ -9,10 +9,10 @@
 // Invariants: H, p_z, x p_y - y p_x. Source: Montgomery, A Tour of Subriemannian Geometries (2002).
 #pragma once
 
-#include "carnot/linear_algebra.h"
-#include "carnot/scalar.h"
-#include "carnot/scene_info.h"
-#include "carnot/stumpff.h"
+#include "carnot/numerics/linear_algebra.h"
+#include "carnot/numerics/scalar.h"
+#include "carnot/numerics/stumpff.h"
+#include "carnot/scene/scene_info.h"
 
 namespace carnot::scenes {
 

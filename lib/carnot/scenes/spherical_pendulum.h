@@ -7,9 +7,9 @@
 
 #include <array>
 
-#include "carnot/linear_algebra.h"
-#include "carnot/scalar.h"
-#include "carnot/scene_info.h"
+#include "carnot/numerics/linear_algebra.h"
+#include "carnot/numerics/scalar.h"
+#include "carnot/scene/scene_info.h"
 
 namespace carnot::scenes {
 

@@ -10,9 +10,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "carnot/linear_algebra.h"
-#include "carnot/scalar.h"
-#include "carnot/scene_info.h"
+#include "carnot/numerics/linear_algebra.h"
+#include "carnot/numerics/scalar.h"
+#include "carnot/scene/scene_info.h"
 
 namespace carnot::scenes {
 

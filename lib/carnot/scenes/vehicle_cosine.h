@@ -5,8 +5,8 @@
 // x p_y - y p_x + p_theta + p_phi, for V is symmetric under rotations about the origin.
 #pragma once
 
+#include "carnot/numerics/stumpff.h"
 #include "carnot/scenes/vehicle.h"
-#include "carnot/stumpff.h"
 
 namespace carnot::scenes {
 

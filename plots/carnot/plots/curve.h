@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "carnot/scene_info.h"
-#include "carnot/trajectory.h"
+#include "carnot/flow/trajectory.h"
+#include "carnot/scene/scene_info.h"
 
 namespace carnot::plots {
 

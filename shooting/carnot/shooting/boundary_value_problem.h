@@ -5,25 +5,25 @@
 #include <utility>
 #include <vector>
 
-#include "carnot/segment.h"
+#include "carnot/dynamics.h"
 
 namespace carnot {
 
 // kOk, or why no geodesic can end at q (length n): dependent constraints, singular coordinates.
-RateStatus end_status(const Segment& segment, const std::vector<double>& q);
+RateStatus end_status(const Dynamics& dynamics, const std::vector<double>& q);
 
 struct BoundaryValueProblem {
-  Segment segment;           // scene and method
+  Dynamics dynamics;         // scene and method
   std::vector<double> from;  // q(0), length n
   std::vector<double> to;    // q(T), length n
   double time = 1;           // T > 0
 
-  // make_segment.h makes a Segment of a scene.
-  BoundaryValueProblem(Segment dynamics,
+  // make_dynamics.h makes a Dynamics of a scene.
+  BoundaryValueProblem(Dynamics system,
                        std::vector<double> start,
                        std::vector<double> target,
                        double duration = 1)
-      : segment(std::move(dynamics)),
+      : dynamics(std::move(system)),
         from(std::move(start)),
         to(std::move(target)),
         time(duration) {}

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "carnot/shooting/curve_tracer.h"
+#include "carnot/shooting/continue/curve_tracer.h"
 
 namespace carnot {
 namespace {
@@ -77,17 +77,17 @@ bool follow_branches(const ProblemLine& line,
 }
 
 void check_start(const BoundaryValueProblem& problem, const Geodesic& start) {
-  if (static_cast<int>(start.p0.size()) != problem.segment.dof) {
+  if (static_cast<int>(start.p0.size()) != problem.dynamics.dof) {
     throw std::invalid_argument("the momentum at the start has " + std::to_string(start.p0.size()) +
                                 " components, the scene has " +
-                                std::to_string(problem.segment.dof));
+                                std::to_string(problem.dynamics.dof));
   }
   const std::size_t samples = start.trajectory.t.size();
   if (start.verification == Verification::kKnots && (samples < 2 || (samples - 1) % 64 != 0)) {
     throw std::invalid_argument("the extremal at the start has " + std::to_string(samples) +
                                 " samples, must have 64 k + 1");
   }
-  if (problem.segment.forced > 0) {
+  if (problem.dynamics.forced > 0) {
     throw std::invalid_argument(
         "continuation is not offered with holonomic constraints that need RATTLE");
   }

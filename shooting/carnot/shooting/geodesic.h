@@ -1,21 +1,12 @@
-// Geodesics between two configurations, without a guess.
-//
-// starts.h makes paths, relaxation.h pulls each tight on the midpoint transcription and reads off a
-// discrete costate, multiple_shooting.h polishes it at the order of the method, verification.h
-// checks the result by an independent forward integration. What is distinct is kept, least action
-// first. All randomness comes from `seed`; the answer does not depend on the number of threads.
+// An extremal that joins two configurations, with what was measured of it.
 #pragma once
 
-#include <cstdint>
-#include <functional>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "carnot/shooting/boundary_value_problem.h"
-#include "carnot/shooting/reason.h"
+#include "carnot/dynamics.h"
 
 namespace carnot {
 
@@ -44,44 +35,5 @@ struct Geodesic {
   std::vector<int> windings;  // whole periods added to the target, with mod_angles
   Trajectory trajectory;
 };
-
-struct GeodesicOptions {
-  int count = 1;     // how many extremals are wanted
-  bool all = false;  // every one found, instead of `count`
-  double max_length = std::numeric_limits<double>::infinity();
-  int starts = 0;                    // paths to relax; 0: the default for what is asked
-  double tolerance = 1e-10;          // largest endpoint error of a verified extremal
-  std::string minimiser = "newton";  // newton, ceres, nlopt, nlopt:NAME (see minimisers())
-  bool mod_angles = false;           // angles need to agree modulo their periods only
-  std::vector<double> guess;         // p0 to start from instead of paths; empty: none
-  std::uint64_t seed = 0;
-  int threads = 0;     // 0: all cores
-  long samples = 201;  // times in each trajectory; 0: none
-  Progress progress;   // fraction done; returns false to stop
-
-  // Throws std::invalid_argument naming the option and what is accepted.
-  void validate(const BoundaryValueProblem& problem) const;
-};
-
-enum class GeodesicStatus { kConverged, kNotConverged, kInterrupted };
-
-struct GeodesicReport {
-  GeodesicStatus status = GeodesicStatus::kNotConverged;
-  Reason reason = Reason::kNone;  // why nothing was found; the first image's with mod_angles,
-  std::string message;            // in words, and what to try
-  std::vector<Geodesic> geodesics;
-  int starts = 0;
-  int converged_starts = 0;
-  int distinct_hit = 0;        // extremals, up to symmetry, that starts led to,
-  double missed_estimate = 0;  // and how many more there may be, by Chao's estimate
-  double elapsed_seconds = 0;
-};
-
-// Throws std::invalid_argument on bad input; numerical failure is a status.
-GeodesicReport find_geodesics(const BoundaryValueProblem& problem,
-                              const GeodesicOptions& options = {});
-
-// Names accepted by GeodesicOptions::minimiser.
-std::vector<std::string> minimisers();
 
 }  // namespace carnot

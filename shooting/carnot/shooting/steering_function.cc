@@ -3,16 +3,16 @@
 #include <stdexcept>
 #include <utility>
 
-#include "carnot/shooting/steering_memory.h"
-#include "carnot/shooting/steering_search.h"
+#include "carnot/shooting/steer/steering_memory.h"
+#include "carnot/shooting/steer/steering_search.h"
 
 namespace carnot {
 
 // The search, and what it has found.
 class SteeringFunction::Implementation {
  public:
-  Implementation(Segment segment, const SteeringOptions& options)
-      : search_(std::make_shared<const SteeringSearch>(std::move(segment), options)),
+  Implementation(Dynamics dynamics, const SteeringOptions& options)
+      : search_(std::make_shared<const SteeringSearch>(std::move(dynamics), options)),
         memory_(options.memory) {}
 
   [[nodiscard]] const std::shared_ptr<const SteeringSearch>& search() const { return search_; }
@@ -23,7 +23,7 @@ class SteeringFunction::Implementation {
                                              SteeringQuestion& question) const {
     std::string refusal = search_->refusal(from, to);
     if (!refusal.empty()) return refused(std::move(refusal));
-    question.ask(search_->segment().info, search_->rules(), from, to);
+    question.ask(search_->dynamics().info, search_->rules(), from, to);
     SteeringMemory::Value known = memory_.find(question.ends);
     if (known != nullptr) return known;
     SteeringMemory::Value found = search_->answers(question, 1).front();
@@ -53,12 +53,12 @@ bool Steering::at(double t, std::span<double> q) const {
   return search_->point(*answer_, sense_, from_, to_, t, q);
 }
 
-SteeringFunction::SteeringFunction(Segment segment, const SteeringOptions& options)
-    : own_(std::make_shared<const Implementation>(std::move(segment), options)) {}
+SteeringFunction::SteeringFunction(Dynamics dynamics, const SteeringOptions& options)
+    : own_(std::make_shared<const Implementation>(std::move(dynamics), options)) {}
 
-int SteeringFunction::dof() const { return own_->search()->segment().dof; }
+int SteeringFunction::dof() const { return own_->search()->dynamics().dof; }
 const SteeringOptions& SteeringFunction::options() const { return own_->search()->options(); }
-const SceneInfo& SteeringFunction::info() const { return own_->search()->segment().info; }
+const SceneInfo& SteeringFunction::info() const { return own_->search()->dynamics().info; }
 bool SteeringFunction::symmetric() const { return own_->search()->reversible(); }
 
 Steering SteeringFunction::steer(std::span<const double> from, std::span<const double> to) const {

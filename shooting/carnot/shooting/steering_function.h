@@ -1,6 +1,6 @@
 // Steering for planners: the geodesic between two configurations as a distance and a path.
 //
-//   const SteeringFunction steer(make_segment(scenes::Unicycle{}));
+//   const SteeringFunction steer(make_dynamics(scenes::Unicycle{}));
 //   const double d = steer.distance(a, b);                  // infinite where none was found
 //   if (steer.interpolate(a, b, 0.5, q)) use(q);            // half-way in time
 //   for (const Steering& way : steer.alternatives(a, b)) use(way.distance());
@@ -28,20 +28,11 @@
 #include <vector>
 
 #include "carnot/shooting/geodesic.h"
-#include "carnot/shooting/steering_question.h"
+#include "carnot/shooting/reason.h"
+#include "carnot/shooting/steer/steering_options.h"
+#include "carnot/shooting/steer/steering_question.h"
 
 namespace carnot {
-
-struct SteeringOptions {
-  double time = 1;           // T; with V = 0 the path does not depend on it
-  bool mod_angles = true;    // angles need to agree modulo their periods only
-  int starts = 0;            // paths to relax; 0: until the least action has been hit often enough
-  double tolerance = 1e-10;  // largest endpoint error
-  double resolution = 1e-9;  // |to - from| below which the path is estimated
-  std::uint64_t seed = 0;
-  int threads = 1;            // of one search
-  std::size_t memory = 4096;  // answers kept, of about 4 KB each; the oldest are dropped
-};
 
 struct SteeringAnswer;
 class SteeringSearch;
@@ -86,7 +77,7 @@ class Steering {
 class SteeringFunction {
  public:
   // Throws std::invalid_argument on options out of range.
-  explicit SteeringFunction(Segment segment, const SteeringOptions& options = {});
+  explicit SteeringFunction(Dynamics dynamics, const SteeringOptions& options = {});
 
   [[nodiscard]] int dof() const;
   [[nodiscard]] const SteeringOptions& options() const;

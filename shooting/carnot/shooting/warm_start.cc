@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "carnot/shooting/end_point.h"
+#include "carnot/shooting/shoot/end_point.h"
 
 namespace carnot {
 namespace {
@@ -14,8 +14,9 @@ constexpr long kSteps = 64;  // of the tangent flow, and where there is no choic
 
 // The steps that reach the tolerance along the extremal from z.
 StepPlan plan_for(const BoundaryValueProblem& problem, std::vector<double> z, double tolerance) {
-  if (problem.segment.has_automatic_flow()) {
-    const AutomaticFlow flow = problem.segment.automatic_flow(0, problem.time, tolerance, z.data());
+  if (problem.dynamics.has_automatic_flow()) {
+    const AutomaticFlow flow =
+        problem.dynamics.automatic_flow(0, problem.time, tolerance, z.data());
     if (flow.reached) return flow.plan;
   }
   return StepPlan::equal(0, problem.time, kSteps);
@@ -37,7 +38,7 @@ EndPointModel::Vector checked(const BoundaryValueProblem& problem,
                               double tolerance) {
   constexpr int kMost = EndPointModel::kMostDof;
   problem.validate();
-  const int n = problem.segment.dof;
+  const int n = problem.dynamics.dof;
   if (static_cast<int>(p0.size()) != n || n > kMost) {
     throw std::invalid_argument("p0 has " + std::to_string(p0.size()) +
                                 " components, the scene has " + std::to_string(n) + ", at most " +
@@ -67,19 +68,19 @@ WarmStart::WarmStart(const BoundaryValueProblem& problem,
   start.insert(start.end(), p0.begin(), p0.end());
   rough_ = plan_for(problem, start, roughness_);
   plan_ = plan_for(problem, start, kFine * tolerance);
-  const double shorter = std::pow(kStricter, -1.0 / problem.segment.order);
+  const double shorter = std::pow(kStricter, -1.0 / problem.dynamics.order);
   check_ = StepPlan::equal(0, problem.time, std::lround(std::ceil(shorter * plan_.count)));
   check_.stop = kStricter * plan_.stop;
   ready_ = end_of(plan_, p0_, end_) &&
-           largest_difference(end_.data(), problem.to.data(), problem.segment.dof) <= kArrives;
+           largest_difference(end_.data(), problem.to.data(), problem.dynamics.dof) <= kArrives;
 }
 
 bool WarmStart::end_of(const StepPlan& plan, const Vector& p0, Vector& q) const {
-  const int n = problem_.segment.dof;
+  const int n = problem_.dynamics.dof;
   std::array<double, 2 * EndPointModel::kMostDof> z{};
   std::copy(problem_.from.begin(), problem_.from.end(), z.begin());
   std::copy(p0.data(), p0.data() + n, z.begin() + n);
-  if (!problem_.segment.flow(plan, z.data()).completed()) return false;
+  if (!problem_.dynamics.flow(plan, z.data()).completed()) return false;
   q = Eigen::Map<const Vector>(z.data(), n);
   return q.allFinite();
 }
@@ -88,7 +89,7 @@ WarmStartReport WarmStart::solve(const double* to, double* p0) const {
   constexpr int kMostFlows = 16;
   constexpr double kAim = 0.3;  // of the tolerance
   constexpr double kFar = 30;   // times the roughness: a rough flow is good enough
-  const int n = problem_.segment.dof;
+  const int n = problem_.dynamics.dof;
   std::copy(p0_.data(), p0_.data() + n, p0);
   WarmStartReport report;
   if (!ready_) return report;

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "carnot/shooting/boundary_value_problem.h"
-#include "carnot/shooting/end_point_model.h"
+#include "carnot/shooting/steer/end_point_model.h"
 
 namespace carnot {
 

@@ -1,0 +1,45 @@
+#include "benchmark/peers/boundary_peers.h"
+
+#include "benchmark/benchmark_clock.h"
+#include "carnot/shooting/extremal/verification.h"
+#include "carnot/shooting/search/momentum_starts.h"
+#include "carnot/shooting/search/starts.h"
+
+namespace carnot::apps {
+namespace {
+
+BoundaryTrial run_ipopt(const BoundaryValueProblem& problem, std::uint64_t seed, int i) {
+  constexpr int kIntervals = 50;
+  const double began = thread_seconds();
+  Start start = make_start(problem, seed, i + 1, kIntervals);
+  BoundaryTrial trial;
+  trial.solved =
+      solve_with_ipopt(problem.dynamics, problem.time / kIntervals, start.path.q, trial.action);
+  trial.seconds = thread_seconds() - began;
+  return trial;
+}
+
+BoundaryTrial run_gsl(const BoundaryValueProblem& problem, std::uint64_t seed, int i) {
+  constexpr long kSteps = 32;
+  const double began = thread_seconds();
+  std::vector<double> p0 = momentum_start(problem, seed, i + 1);
+  BoundaryTrial trial;
+  if (solve_with_gsl(problem, p0)) {
+    const auto extremal =
+        verify(problem, knots_of(problem, p0, 1, kSteps), kSteps, GeodesicOptions{}.tolerance);
+    trial.solved = extremal.has_value();
+    if (extremal) trial.action = extremal->geodesic.action;
+  }
+  trial.seconds = thread_seconds() - began;
+  return trial;
+}
+
+}  // namespace
+
+std::vector<BoundarySolver> boundary_peers() {
+  // The linear solver that Debian's Ipopt uses, MUMPS, is not made for threads.
+  return {{"ipopt", BoundaryStart::kPath, true, false, false, run_ipopt},
+          {"gsl-hybridsj", BoundaryStart::kMomentum, true, true, true, run_gsl}};
+}
+
+}  // namespace carnot::apps

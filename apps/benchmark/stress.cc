@@ -1,0 +1,219 @@
+// carnot stress: default searches for the geodesics to many random targets.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <memory>
+
+#include "benchmark/benchmark_clock.h"
+#include "carnot/numerics/parallel.h"
+#include "carnot/shooting/find_geodesics.h"
+#include "catalogue/method_table.h"
+#include "catalogue/scene_choice.h"
+#include "run/delivery.h"
+#include "run/geodesic_text.h"
+#include "run/random_target.h"
+#include "run/subcommands.h"
+#include "text/numbers.h"
+#include "text/progress_bar.h"
+#include "text/text_table.h"
+
+namespace carnot::apps {
+namespace {
+
+constexpr const char* kStressFooter = R"(
+From the origin to targets drawn uniformly, positions within 3, angles within pi, on the cover and
+on the near side of singular coordinates, or from one random point of a manifold to another; each
+the default search for one geodesic on one thread, many at a time. "solved" has been verified by an
+independent integration, at knots where the end point is too sensitive. Those that are not are
+counted by reason: the codes of `carnot geodesic`, and irregular-end where the constraints are
+dependent at the target; --json has them one by one, with messages. Times are CPU times.
+
+Examples
+  carnot stress vehicle
+  carnot stress trailer1 --targets 1000 --seed 7 --json
+
+Exit status: 0 success, also where targets are left unsolved; 2 bad input, 130 interrupted.)";
+
+struct StressOptions {
+  std::string scene;
+  std::vector<std::string> set;
+  std::string method;
+  std::string targets = "1000";
+  std::string seed = "0";
+  std::string threads;
+  Destination destination;
+};
+
+struct Trial {
+  std::vector<double> from;
+  std::vector<double> to;
+  double seconds = 0;
+  bool solved = false;
+  bool at_knots = false;
+  Label label = Label::kUnknown;
+  std::string reason;  // a code
+  std::string message;
+};
+
+Trial try_target(const Dynamics& dynamics, std::uint64_t seed, int i) {
+  const double began = thread_seconds();
+  Trial trial;
+  trial.from.assign(dynamics.dof, 0.0);
+  if (dynamics.holonomic > 0) trial.from = random_target(dynamics, ~seed, i);
+  trial.to = random_target(dynamics, seed, i);
+  GeodesicOptions options;
+  options.seed = seed;
+  options.threads = 1;
+  options.samples = 0;
+  try {
+    const GeodesicReport report = find_geodesics({dynamics, trial.from, trial.to}, options);
+    trial.reason = name_of(report.reason);
+    trial.message = report.message;
+    trial.solved = !report.geodesics.empty();
+    if (trial.solved) {
+      trial.at_knots = report.geodesics[0].verification == Verification::kKnots;
+      trial.label = report.geodesics[0].label;
+    }
+  } catch (const std::invalid_argument& error) {  // e.g. constraints that are dependent there
+    trial.reason = name_of(Reason::kIrregularEnd);
+    trial.message = error.what();
+  }
+  trial.seconds = thread_seconds() - began;
+  return trial;
+}
+
+// Empty when stopped.
+std::vector<Trial> try_all(
+    const Dynamics& dynamics, int targets, std::uint64_t seed, int threads, const Progress& go_on) {
+  constexpr int kBatch = 16;  // between two looks at the progress
+  std::vector<Trial> trials(targets);
+  for (int first = 0; first < targets; first += kBatch * threads) {
+    if (!go_on(static_cast<double>(first) / targets)) return {};
+    const int count = std::min(kBatch * threads, targets - first);
+    parallel_for(
+        count, threads, [&](int i) { trials[first + i] = try_target(dynamics, seed, first + i); });
+  }
+  return trials;
+}
+
+double quantile(const std::vector<Trial>& trials, double share) {
+  std::vector<double> seconds;
+  for (const Trial& trial : trials) seconds.push_back(trial.seconds);
+  const auto at = seconds.begin() +
+                  static_cast<std::ptrdiff_t>(share * static_cast<double>(seconds.size() - 1));
+  std::nth_element(seconds.begin(), at, seconds.end());
+  return *at;
+}
+
+Json summary_of(const std::vector<Trial>& trials) {
+  int solved = 0;
+  int at_knots = 0;
+  std::map<std::string, int> labels;
+  std::map<std::string, int> reasons;
+  Json failures = Json::array();
+  for (const Trial& trial : trials) {
+    solved += trial.solved ? 1 : 0;
+    at_knots += trial.at_knots ? 1 : 0;
+    if (trial.solved) {
+      ++labels[name_of(trial.label)];
+    } else {
+      ++reasons[trial.reason];
+      failures.push_back({{"from", trial.from},
+                          {"to", trial.to},
+                          {"reason", trial.reason},
+                          {"message", trial.message}});
+    }
+  }
+  const auto count = static_cast<double>(trials.size());
+  return {{"targets", trials.size()},
+          {"solved", solved},
+          {"solved_share", solved / count},
+          {"verified_at_knots", at_knots},
+          {"labels", labels},
+          {"reasons", reasons},
+          {"median_seconds", quantile(trials, 0.5)},
+          {"p90_seconds", quantile(trials, 0.9)},
+          {"failures", failures}};
+}
+
+std::string stress_text(const Json& json) {
+  const auto count = [&json](const char* key) { return json[key].get<long>(); };
+  const auto milliseconds = [&json](const char* key) {
+    return fmt::format("{:.3g} ms", 1e3 * json[key].get<double>());
+  };
+  std::vector<std::vector<std::string>> rows{
+      {"scene", json["scene"].get<std::string>()},
+      {"targets", std::to_string(count("targets"))},
+      {"solved and verified",
+       fmt::format("{} ({:.2f} %)", count("solved"), 1e2 * json["solved_share"].get<double>())},
+      {"verified at knots", std::to_string(count("verified_at_knots"))},
+      {"median CPU time", milliseconds("median_seconds")},
+      {"90 % within", milliseconds("p90_seconds")},
+      {"wall time", fmt::format("{:.3g} s", json["elapsed_seconds"].get<double>())}};
+  for (const auto& [label, times] : json["labels"].items()) {
+    rows.push_back({label, std::to_string(times.get<long>())});
+  }
+  for (const auto& [reason, times] : json["reasons"].items()) {
+    rows.push_back({"unsolved", fmt::format("{}: {}", times.get<long>(), reason)});
+  }
+  return text_table(rows);
+}
+
+int run_stress(const StressOptions& options, const std::vector<std::string>& arguments) {
+  constexpr long kMostTargets = 10000000;
+  const auto begin = std::chrono::steady_clock::now();
+  const SceneEntry& entry = find_scene(options.scene);
+  const ParameterValues parameters = parse_parameters(entry, options.set);
+  const Method& method = choose_method(options.method, "rattle6", entry);
+  const auto targets =
+      static_cast<int>(parse_integer("--targets", options.targets, 1, kMostTargets));
+  const std::uint64_t seed = parse_seed("--seed", options.seed);
+  const int threads = parse_threads(options.threads);
+  check_table_output(options.destination);
+  const Dynamics dynamics = entry.make(parameters, method.name);
+  if (dynamics.forced > 0) {
+    refuse("SCENE", options.scene, "searches by RATTLE take too long", "scenes that need none");
+  }
+  ProgressBar bar("targets", targets, options.destination.quiet);
+  const std::vector<Trial> trials =
+      try_all(dynamics, targets, seed, thread_count(threads), bar.callback());
+  if (trials.empty()) return kInterrupted;
+  Result result;
+  result.json = result_head(arguments);
+  result.json["scene"] = entry.info.name;
+  result.json["parameters"] = parameters;
+  result.json["method"] = method.name;
+  result.json["seed"] = seed;
+  result.json.update(summary_of(trials));
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+  result.json["elapsed_seconds"] = elapsed.count();
+  result.text = [&] { return stress_text(result.json); };
+  return deliver(result, options.destination);
+}
+
+}  // namespace
+
+void add_stress(CLI::App& app, Invocation& invocation) {
+  auto options = std::make_shared<StressOptions>();
+  CLI::App& stress = *app.add_subcommand("stress", "Find geodesics to many random targets.");
+  stress.add_option("SCENE", options->scene, "a name from `carnot scenes`")->type_name("");
+  stress.add_option("--set", options->set, "set a parameter of the scene (repeatable)")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
+    stress.add_option(name, value, help)->type_name(type);
+  };
+  add("--method", options->method, "NAME", "a name from `carnot methods` (gauss16)");
+  add("--targets", options->targets, "N", "how many (1000)");
+  add("--seed", options->seed, "N", "fixes all randomness (0)");
+  add("--threads", options->threads, "N", "threads; the answer does not depend on it (all)");
+  add_table_options(stress, options->destination);
+  stress.footer(kStressFooter);
+  stress.callback([options, &invocation] {
+    invocation.exit_status = run_stress(*options, invocation.arguments);
+  });
+}
+
+}  // namespace carnot::apps

@@ -1,0 +1,136 @@
+// Two panels: action and p(0) against what changes.
+#include <fmt/format.h>
+
+#include "carnot/plots/curve.h"
+#include "carnot/plots/script.h"
+#include "carnot/plots/series_plot.h"
+#include "continue/continue_result.h"
+#include "text/text_table.h"
+
+namespace carnot::apps {
+namespace {
+
+using plots::Series;
+using plots::SeriesPanel;
+
+using PointValue = std::function<double(const ContinuationPoint&)>;
+using SpecialValue = std::function<double(const SpecialPoint&)>;
+
+constexpr int kFoldColor = 4;
+constexpr int kBranchPointColor = 5;
+
+// One line for each curve; only the first is in the legend.
+void add_curves(const ContinueRequest& request,
+                const ContinuationReport& report,
+                const std::string& title,
+                int color,
+                const PointValue& value,
+                SeriesPanel& panel) {
+  const int last = report.points.empty() ? -1 : report.points.back().branch;
+  for (int branch = 0; branch <= last; ++branch) {
+    Series series;
+    series.title = branch == 0 ? title : "";
+    series.color = color;
+    series.mark = Series::Mark::kLine;
+    for (const ContinuationPoint& point : report.points) {
+      if (point.branch != branch) continue;
+      series.x.push_back(axis_value(request.along, point.s));
+      series.y.push_back(value(point));
+    }
+    panel.series.push_back(std::move(series));
+  }
+}
+
+void add_special(const ContinueRequest& request,
+                 const std::vector<SpecialPoint>& points,
+                 const std::string& title,
+                 int color,
+                 const std::vector<SpecialValue>& values,
+                 SeriesPanel& panel) {
+  if (points.empty()) return;
+  Series series;
+  series.title = title;
+  series.color = color;
+  series.mark = Series::Mark::kPoints;
+  for (const SpecialPoint& point : points) {
+    for (const SpecialValue& value : values) {
+      series.x.push_back(axis_value(request.along, point.s));
+      series.y.push_back(value(point));
+    }
+  }
+  panel.series.push_back(std::move(series));
+}
+
+void add_all_special(const ContinueRequest& request,
+                     const ContinuationReport& report,
+                     const std::vector<SpecialValue>& values,
+                     SeriesPanel& panel) {
+  add_special(request, report.folds, "fold", kFoldColor, values, panel);
+  add_special(request, report.branch_points, "branch point", kBranchPointColor, values, panel);
+}
+
+SeriesPanel action_panel(const ContinueRequest& request, const ContinuationReport& report) {
+  SeriesPanel panel;
+  panel.title = "action";
+  panel.x.label = axis_label(request.along, request.run);
+  panel.y.label = "action";
+  add_curves(
+      request,
+      report,
+      "extremals",
+      0,
+      [](const ContinuationPoint& point) { return point.geodesic.action; },
+      panel);
+  add_all_special(request, report, {[](const SpecialPoint& p) { return p.action; }}, panel);
+  return panel;
+}
+
+SeriesPanel momentum_panel(const ContinueRequest& request, const ContinuationReport& report) {
+  const SceneInfo& info = request.run.entry->info;
+  SeriesPanel panel;
+  panel.title = "momentum at the start";
+  panel.x.label = axis_label(request.along, request.run);
+  panel.y.label = "p(0)";
+  std::vector<SpecialValue> values;
+  for (std::size_t j = 0; j < request.ends.from.size(); ++j) {
+    const std::string title = fmt::format("p_{{{}}}", plots::coordinate_symbol(info, j));
+    // The colours of folds and branch points are taken.
+    const int color = static_cast<int>(j < kFoldColor ? j : j + 2);
+    add_curves(
+        request,
+        report,
+        title,
+        color,
+        [j](const ContinuationPoint& point) { return point.geodesic.p0[j]; },
+        panel);
+    values.emplace_back([j](const SpecialPoint& point) { return point.p0[j]; });
+  }
+  add_all_special(request, report, values, panel);
+  return panel;
+}
+
+}  // namespace
+
+std::string draw_continuation(const std::string& file,
+                              const ContinueRequest& request,
+                              const ContinuationReport& report) {
+  const Ends& ends = request.ends;
+  plots::SeriesPage page;
+  page.title = plots::escaped(fmt::format("{}: geodesics from {} to {} in time {:g}",
+                                          request.run.entry->info.name,
+                                          text_vector(ends.from),
+                                          text_vector(ends.to),
+                                          ends.time));
+  const auto count = [](std::size_t number, const std::string& what) {
+    return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
+  };
+  page.subtitle = plots::escaped(fmt::format("continued along {}: {}, {}, {}",
+                                             request.along.name,
+                                             count(report.points.size(), "point"),
+                                             count(report.folds.size(), "fold"),
+                                             count(report.branch_points.size(), "branch point")));
+  page.panels = {action_panel(request, report), momentum_panel(request, report)};
+  return plots::write_series(file, page);
+}
+
+}  // namespace carnot::apps

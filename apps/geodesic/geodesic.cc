@@ -1,0 +1,158 @@
+// carnot geodesic: extremals that join two configurations, without a guess.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "catalogue/holonomic_check.h"
+#include "catalogue/scene_choice.h"
+#include "geodesic/geodesic_result.h"
+#include "run/subcommands.h"
+#include "text/nearest.h"
+#include "text/numbers.h"
+#include "text/progress_bar.h"
+
+namespace carnot::apps {
+namespace {
+
+constexpr long kMostGeodesics = 10000;
+constexpr long kMostStarts = 10000000;
+
+constexpr const char* kFooter = R"(
+No guess is needed. Distinct extremals are listed, least action first; mirror partners count
+separately. Angles live on the cover: 0 and 2 pi are different ends, unless --mod-angles. Every
+extremal is checked by an independent integration at a tighter setting: its largest error at the end
+is "error" in the table and "endpoint_error" in the JSON. There, "hits" counts the starts that led to
+an extremal or a mirror partner, and "missed_estimate" is Chao's estimate of how many were not
+found. On failure "reason" is a code, in the order of how far the best attempt came:
+no-start-converged, singular-coordinates (most paths ran into one), guess-failed, not-refined,
+flow-failed, not-joined, not-verified, beyond-double (round-off exceeds the tolerance), too-long (for
+--max-length); "message" says more and what to try.
+Angles are radians; pi/2 and -3*pi/4 are numbers. Units are the scene's own: see
+`carnot scenes SCENE`.
+
+Examples
+  carnot geodesic vehicle --from 0,0,0,0 --to 0,1,0,0 --plot parking.png
+  carnot geodesic vehicle --from -3,4,-pi/2,0 --to 0,0,0,0 --count 4 --json
+  carnot geodesic heisenberg-group --from 0,0,0 --to 1,0,0.2 --all --max-length 10 --output all.csv
+
+Exit status: 0 found (also when fewer than --count exist), 1 nothing converged, 2 bad input,
+130 interrupted.)";
+
+struct Options {
+  RunOptions run;
+  std::string from;
+  std::string to;
+  std::string time = "1";
+  std::string count;
+  bool all = false;
+  std::string max_length;
+  std::string starts;
+  std::string tolerance = "1e-10";
+  std::string minimiser = "newton";
+  std::string guess;
+  bool mod_angles = false;
+};
+
+std::string check_minimiser(const std::string& name) {
+  const std::vector<std::string> known = minimisers();
+  if (std::find(known.begin(), known.end(), name) == known.end()) {
+    refuse("--minimiser",
+           name,
+           "no such minimiser" + suggestion(name, known),
+           fmt::format("{}", fmt::join(known, ", ")));
+  }
+  return name;
+}
+
+GeodesicOptions check_search(const Options& options, const Run& run) {
+  GeodesicOptions search;
+  if (options.all && !options.count.empty()) {
+    refuse("--count", options.count, "given besides --all", "one of the two");
+  }
+  search.all = options.all;
+  if (!options.count.empty()) {
+    search.count = static_cast<int>(parse_integer("--count", options.count, 1, kMostGeodesics));
+  }
+  if (!options.max_length.empty()) {
+    search.max_length = parse_positive("--max-length", options.max_length);
+  }
+  if (!options.starts.empty()) {
+    search.starts = static_cast<int>(parse_integer("--starts", options.starts, 1, kMostStarts));
+  }
+  search.tolerance = parse_tolerance("--tolerance", options.tolerance);
+  search.minimiser = check_minimiser(options.minimiser);
+  if (!options.guess.empty()) {
+    search.guess = parse_vector("--guess", options.guess, coordinate_names(*run.entry));
+  }
+  search.mod_angles = options.mod_angles;
+  search.seed = run.seed;
+  search.threads = run.threads;
+  search.samples = run.samples;
+  return search;
+}
+
+GeodesicRequest check(const Options& options) {
+  GeodesicRequest request;
+  request.run = check(options.run);
+  const auto names = coordinate_names(*request.run.entry);
+  if (options.from.empty()) refuse_missing("--from", vector_accepted(names));
+  if (options.to.empty()) refuse_missing("--to", vector_accepted(names));
+  request.from = parse_vector("--from", options.from, names);
+  request.to = parse_vector("--to", options.to, names);
+  check_end("--from", options.from, request.run.dynamics, request.from);
+  check_end("--to", options.to, request.run.dynamics, request.to);
+  request.time = parse_positive("--time", options.time);
+  request.options = check_search(options, request.run);
+  return request;
+}
+
+GeodesicReport search(const GeodesicRequest& request) {
+  ProgressBar bar("%", 100, request.run.destination.quiet);
+  GeodesicOptions options = request.options;
+  options.progress = bar.callback();
+  return find_geodesics(
+      BoundaryValueProblem(request.run.dynamics, request.from, request.to, request.time), options);
+}
+
+void add_search_options(CLI::App& app, Options& options) {
+  const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
+    app.add_option(name, value, help)->type_name(type);
+  };
+  add("--from", options.from, "Q0", "configuration at the start, e.g. -3,4,-pi/2,0");
+  add("--to", options.to, "Q1", "configuration at the end");
+  add("--time", options.time, "T", "how long it takes, > 0 (1)");
+  add("--count", options.count, "K", "up to K extremals (1)");
+  app.add_flag("--all", options.all, "every extremal that is found, instead of --count");
+  add("--max-length", options.max_length, "A", "leave out longer ones");
+  add("--starts", options.starts, "N", "paths to start from (as many as the task needs)");
+  add("--tolerance", options.tolerance, "TOL", "largest error at the end (1e-10)");
+  add("--minimiser",
+      options.minimiser,
+      "NAME",
+      "newton, ceres, nlopt or nlopt:NAME, NAME one of slsqp, lbfgs, mlsl, isres, crs (newton)");
+  add("--guess", options.guess, "P0", "momentum to start from instead");
+  app.add_flag("--mod-angles", options.mod_angles, "angles agree modulo their periods");
+}
+
+}  // namespace
+
+void add_geodesic(CLI::App& app, Invocation& invocation) {
+  auto options = std::make_shared<Options>();
+  options->run.holonomic_default = "rattle6";  // for the accuracy that verification asks for
+  CLI::App& geodesic =
+      *app.add_subcommand("geodesic", "Find geodesics between two configurations.");
+  add_search_options(geodesic, *options);
+  add_run_options(geodesic, options->run);
+  geodesic.footer(kFooter);
+  geodesic.callback([options, &invocation] {
+    const GeodesicRequest request = check(*options);
+    const GeodesicReport report = search(request);
+    invocation.exit_status = report.status == GeodesicStatus::kInterrupted
+                                 ? kInterrupted
+                                 : deliver(geodesic_result(request, report, invocation.arguments),
+                                           request.run.destination);
+  });
+}
+
+}  // namespace carnot::apps

@@ -1,0 +1,152 @@
+#include "geodesic/geodesic_result.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "carnot/plots/figure.h"
+#include "run/geodesic_text.h"
+#include "text/csv_text.h"
+#include "text/text_table.h"
+
+namespace carnot::apps {
+namespace {
+
+Json geodesic_json(const Geodesic& geodesic, std::size_t rank, bool with_trajectory) {
+  Json json;
+  add_extremal(geodesic, json);
+  json["constraint_error"] = geodesic.constraint_error;
+  json["energy_drift"] = geodesic.energy_drift;
+  json["conjugate_times"] = or_null(geodesic.conjugate_times);
+  json["label"] = name_of(geodesic.label);
+  json["abnormal"] = or_null(geodesic.abnormal);
+  json["morse_index"] = or_null(geodesic.morse_index);
+  json["family_dimension"] = or_null(geodesic.family_dimension);
+  json["rank_in_list"] = rank;
+  json["hits"] = geodesic.hits;
+  if (!geodesic.windings.empty()) json["windings"] = geodesic.windings;
+  for (const auto& [name, value] : geodesic.extremes) json[name] = value;
+  if (with_trajectory) json["trajectory"] = trajectory_json(geodesic.trajectory);
+  return json;
+}
+
+Json report_json(const GeodesicRequest& request,
+                 const GeodesicReport& report,
+                 const std::vector<std::string>& arguments) {
+  const Run& run = request.run;
+  Json geodesics = Json::array();
+  for (const Geodesic& geodesic : report.geodesics) {
+    geodesics.push_back(geodesic_json(geodesic, geodesics.size() + 1, !run.no_trajectory));
+  }
+  Json json = problem_json(arguments, run, request.from, request.to, request.time);
+  json["status"] = report.status == GeodesicStatus::kConverged ? "converged" : "not_converged";
+  const bool found = report.reason == Reason::kNone;
+  json["reason"] = found ? Json(nullptr) : Json(name_of(report.reason));
+  json["message"] = report.message;
+  json["geodesics"] = std::move(geodesics);
+  json["starts"] = report.starts;
+  json["converged_starts"] = report.converged_starts;
+  json["distinct_hit"] = report.distinct_hit;
+  json["missed_estimate"] = report.missed_estimate;
+  json["elapsed_seconds"] = report.elapsed_seconds;
+  return json;
+}
+
+// "largest_steering_angle" as a column of a table for people.
+std::string column_title(const Extreme& extreme) {
+  std::string title = extreme.name;
+  std::replace(title.begin(), title.end(), '_', ' ');
+  return extreme.unit.empty() ? title : title + " [" + extreme.unit + "]";
+}
+
+std::vector<std::string> header_row(const SceneInfo& info) {
+  std::vector<std::string> row{"#", "action", "length", "error", "label"};
+  for (const Extreme& extreme : info.extremes) row.push_back(column_title(extreme));
+  row.emplace_back("p0");
+  return row;
+}
+
+std::vector<std::string> geodesic_row(const Geodesic& geodesic,
+                                      const SceneInfo& info,
+                                      std::size_t rank) {
+  std::vector<std::string> row = geodesic_cells(geodesic);
+  row.insert(row.begin(), std::to_string(rank));
+  for (const Extreme& extreme : info.extremes) {
+    std::string text = "-";
+    for (const auto& [name, value] : geodesic.extremes) {
+      if (name == extreme.name) text = text_number(value);
+    }
+    row.push_back(text);
+  }
+  row.push_back(text_vector(geodesic.p0, 8));
+  return row;
+}
+
+std::string table(const GeodesicReport& report, const SceneInfo& info) {
+  constexpr std::size_t kMostRows = 50;
+  const std::size_t found = report.geodesics.size();
+  std::vector<std::vector<std::string>> rows{header_row(info)};
+  for (std::size_t i = 0; i < std::min(found, kMostRows); ++i) {
+    rows.push_back(geodesic_row(report.geodesics[i], info, i + 1));
+  }
+  const std::string text = text_table(rows);
+  return found > kMostRows ? text + fmt::format("... {} more (see --json)\n", found - kMostRows)
+                           : text;
+}
+
+std::string report_text(const GeodesicRequest& request, const GeodesicReport& report) {
+  const Run& run = request.run;
+  const std::size_t found = report.geodesics.size();
+  std::string text = fmt::format("{}: {} geodesic{} from {} to {} in time {:g}\n",
+                                 run.entry->info.name,
+                                 found,
+                                 found == 1 ? "" : "s",
+                                 text_vector(request.from),
+                                 text_vector(request.to),
+                                 request.time);
+  if (found > 0) text += '\n' + table(report, run.entry->info) + '\n';
+  text += fmt::format("{} of {} starts converged, {}, {:.3g} s\n",
+                      report.converged_starts,
+                      report.starts,
+                      run.method.name,
+                      report.elapsed_seconds);
+  if (!report.message.empty()) text += report.message + '\n';
+  if (found > 0) text += written_text(run.destination);
+  return text;
+}
+
+std::vector<plots::Curve> curves(const GeodesicReport& report) {
+  std::vector<plots::Curve> curves;
+  for (const Geodesic& geodesic : report.geodesics) {
+    curves.push_back({fmt::format("geodesic {}", curves.size() + 1),
+                      &geodesic.trajectory,
+                      geodesic.action,
+                      geodesic.length,
+                      geodesic.extremes});
+  }
+  return curves;
+}
+
+}  // namespace
+
+Result geodesic_result(const GeodesicRequest& request,
+                       const GeodesicReport& report,
+                       const std::vector<std::string>& arguments) {
+  const Dynamics& dynamics = request.run.dynamics;
+  Result result;
+  result.delivered = report.status == GeodesicStatus::kConverged && !report.geodesics.empty();
+  result.message = "no geodesic was found: " + report.message;
+  result.json = report_json(request, report, arguments);
+  result.text = [&] { return report_text(request, report); };
+  result.csv = [&] {
+    std::vector<const Trajectory*> trajectories;
+    for (const Geodesic& geodesic : report.geodesics) trajectories.push_back(&geodesic.trajectory);
+    return csv_text(dynamics.info, dynamics.multipliers, trajectories);
+  };
+  result.draw = [&](const std::string& file) {
+    return plots::write_figure(file, dynamics.info, curves(report), request.run.destination.figure);
+  };
+  return result;
+}
+
+}  // namespace carnot::apps

@@ -1,0 +1,64 @@
+#include "run/geodesic_text.h"
+
+#include "text/text_table.h"
+
+namespace carnot::apps {
+
+const char* name_of(Label label) {
+  switch (label) {
+    case Label::kLocallyMinimal:
+      return "locally-minimal";
+    case Label::kConjugatePassed:
+      return "conjugate-passed";
+    case Label::kSingular:
+      return "singular";
+    case Label::kUnknown:
+      return "unknown";
+  }
+  return "unknown";
+}
+
+Json problem_json(const std::vector<std::string>& arguments,
+                  const Run& run,
+                  const std::vector<double>& from,
+                  const std::vector<double>& to,
+                  double time) {
+  Json json = result_head(arguments);
+  json["scene"] = run.entry->info.name;
+  json["parameters"] = parameters_json(run);
+  json["from"] = from;
+  json["to"] = to;
+  json["time"] = time;
+  json["method"] = run.method.name;
+  return json;
+}
+
+void add_extremal(const Geodesic& geodesic, Json& json) {
+  const bool single = geodesic.verification == Verification::kSingle;
+  json["p0"] = geodesic.p0;
+  json["lambda0"] = geodesic.lambda0;
+  json["action"] = geodesic.action;
+  json["length"] = or_null(geodesic.length);
+  json["verification"] = single ? "single" : "knots";
+  json["endpoint_error"] = single ? Json(geodesic.endpoint_error) : Json(nullptr);
+  json["knot_defect"] = single ? Json(nullptr) : Json(geodesic.knot_defect);
+}
+
+std::vector<std::string> geodesic_cells(const Geodesic& geodesic) {
+  const bool single = geodesic.verification == Verification::kSingle;
+  const double error = single ? geodesic.endpoint_error : geodesic.knot_defect;
+  return {text_number(geodesic.action, 10),
+          geodesic.length ? text_number(*geodesic.length, 10) : "-",
+          text_number(error, 2) + (single ? "" : " (knots)"),
+          name_of(geodesic.label)};
+}
+
+std::string written_text(const Destination& destination) {
+  std::string text;
+  for (const std::string& file : {destination.plot, destination.output}) {
+    if (!file.empty()) text += "written: " + file + '\n';
+  }
+  return text;
+}
+
+}  // namespace carnot::apps

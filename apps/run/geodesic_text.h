@@ -1,0 +1,31 @@
+// What every subcommand that finds geodesics says of one.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "carnot/shooting/geodesic.h"
+#include "run/run_options.h"
+
+namespace carnot::apps {
+
+// "locally-minimal" and so on.
+const char* name_of(Label label);
+
+// How the JSON of such a subcommand begins: up to "method".
+Json problem_json(const std::vector<std::string>& arguments,
+                  const Run& run,
+                  const std::vector<double>& from,
+                  const std::vector<double>& to,
+                  double time);
+
+// Adds "p0" to "knot_defect".
+void add_extremal(const Geodesic& geodesic, Json& json);
+
+// Its action, length, error and label, for people.
+std::vector<std::string> geodesic_cells(const Geodesic& geodesic);
+
+// "written: FILE", a line for each file that was asked for.
+std::string written_text(const Destination& destination);
+
+}  // namespace carnot::apps

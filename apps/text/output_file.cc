@@ -1,0 +1,75 @@
+#include "text/output_file.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <system_error>
+
+#include "carnot/plots/interrupts_blocked.h"
+#include "text/numbers.h"
+
+namespace carnot::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path directory_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+// Refuses unless the directory of `path` takes a new file.
+void check_output_directory(std::string_view option, const std::string& path) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) refuse(option, path, "is a directory", "the name of a file");
+  const fs::path directory = directory_of(path);
+  if (!fs::is_directory(directory, ignored)) {
+    const std::string why = fmt::format("there is no directory '{}'", directory.string());
+    refuse(option, path, why, "a file in an existing directory");
+  }
+  if (access(directory.c_str(), W_OK | X_OK) != 0) {
+    const std::string why = fmt::format("no permission to write in '{}'", directory.string());
+    refuse(option, path, why, "a file in a writable directory");
+  }
+}
+
+}  // namespace
+
+bool has_ending(const std::string& path, std::string_view ending) {
+  return fs::path(path).extension() == ending;
+}
+
+void check_output_file(std::string_view option,
+                       const std::string& path,
+                       const std::vector<std::string>& endings) {
+  if (std::none_of(endings.begin(), endings.end(), [&](const std::string& ending) {
+        return has_ending(path, ending);
+      })) {
+    const auto accepted = fmt::format("a file name that ends in {}", fmt::join(endings, " or "));
+    refuse(option, path, "unknown ending", accepted);
+  }
+  check_output_directory(option, path);
+}
+
+void write_file(const std::string& path, std::string_view text) {
+  const plots::InterruptsBlocked blocked;
+  const fs::path target(path);
+  const fs::path temporary =
+      directory_of(target) / fmt::format(".{}.{}.part", target.filename().string(), getpid());
+  std::ofstream file(temporary, std::ios::binary);
+  file << text;
+  file.close();
+  std::error_code error;
+  if (file) fs::rename(temporary, target, error);
+  if (!file || error) {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    throw std::runtime_error(
+        fmt::format("cannot write '{}'{}", path, error ? ": " + error.message() : ""));
+  }
+}
+
+}  // namespace carnot::apps

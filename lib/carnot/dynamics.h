@@ -1,0 +1,168 @@
+// A scene and a method behind a handful of function pointers: where templates end.
+//
+// Relaxation, shooting, NLopt and the apps are compiled once against this struct; make_dynamics.h
+// makes one. All arguments are plain double pointers: q, p of length n, lambda and g of length k,
+// z = (q, p) of length 2n. One indirect call per trajectory; inside it everything is inlined.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "carnot/flow/reports.h"
+#include "carnot/scene/scene_info.h"
+
+namespace carnot {
+
+// H, velocity and multipliers at one phase point.
+struct PointValues {
+  RateStatus status = RateStatus::kOk;
+  std::optional<Regularity> regularity;  // of H_yy, where y is found by Newton's method
+  double hamiltonian = std::numeric_limits<double>::quiet_NaN();
+};
+
+// How far a phase point is from the manifold of the holonomic constraints.
+struct HolonomicResiduals {
+  double position = 0;                                         // max |h(q)|
+  double velocity = std::numeric_limits<double>::quiet_NaN();  // max |Dh q'| / |q'|
+};
+
+struct Dynamics {
+  int dof = 0;
+  int multipliers = 0;
+  int transcribed = 0;     // constraints of the midpoint transcription; k for velocity constraints
+  int holonomic = 0;       // number of constraints h(q) = 0,
+  int forced = 0;          // and of those kept by forces: momenta along their Dh move nothing
+  bool autonomous = true;  // H does not depend on time
+  std::string method;
+  int order = 0;
+  bool symplectic = true;
+  SceneInfo info;
+  std::shared_ptr<const void> system;
+
+  // Advances z in place; on failure z is that of time_reached. No allocation.
+  [[nodiscard]] FlowReport flow(const StepPlan& plan, double* z) const {
+    return calls.flow(system.get(), plan, z);
+  }
+  // The same, and m = dz(end)/dz(start), row-major 2n x 2n. No allocation.
+  [[nodiscard]] FlowReport tangent_flow(const StepPlan& plan, double* z, double* m) const {
+    return calls.tangent_flow(system.get(), plan, z, m);
+  }
+  // Advances z with an error of about `tolerance`, constant steps chosen by a trial; see
+  // automatic_flow.h. Only where has_automatic_flow(). No allocation.
+  [[nodiscard]] AutomaticFlow automatic_flow(double start,
+                                             double duration,
+                                             double tolerance,
+                                             double* z) const {
+    return calls.automatic_flow(system.get(), start, duration, tolerance, z);
+  }
+  [[nodiscard]] bool has_automatic_flow() const { return calls.automatic_flow != nullptr; }
+  // Advances `count` phase points, one after the other in z, over the plan; on `threads` threads
+  // (0: all cores). Those that fail become NaN.
+  [[nodiscard]] BatchReport flow_batch(const StepPlan& plan,
+                                       int count,
+                                       double* z,
+                                       int threads = 0) const;
+  // The same with an error of about `tolerance` each, side by side with an explicit method of
+  // order 8 and adaptive steps: fast, and not symplectic. Only where has_adaptive_batch().
+  [[nodiscard]] BatchReport adaptive_batch(double start,
+                                           double duration,
+                                           double tolerance,
+                                           int count,
+                                           double* z,
+                                           int threads = 0) const {
+    return calls.adaptive_batch(system.get(), start, duration, tolerance, count, z, threads);
+  }
+  [[nodiscard]] bool has_adaptive_batch() const { return calls.adaptive_batch != nullptr; }
+  // The same as flow(), measured and recorded.
+  [[nodiscard]] FlowSummary monitored_flow(const StepPlan& plan,
+                                           double* z,
+                                           const MonitorOptions& options) const {
+    return calls.monitored_flow(system.get(), plan, z, options);
+  }
+  // H, q' and lambda at (t, q, p).
+  PointValues evaluate(
+      double t, const double* q, const double* p, double* q_dot, double* lambda) const {
+    return calls.evaluate(system.get(), t, q, p, q_dot, lambda);
+  }
+  // Vanishes where the coordinates are singular; 1 for a scene where they nowhere are. A path from
+  // one sign to the other passes such a point.
+  [[nodiscard]] double chart(const double* q) const {
+    return calls.chart != nullptr ? calls.chart(system.get(), q) : 1.0;
+  }
+  // p of the velocity, which is projected on the admissible ones first. Returns the relative
+  // violation before, NaN on failure.
+  double momentum(double t, const double* q, double* q_dot, const double* lambda, double* p) const {
+    return calls.momentum(system.get(), t, q, q_dot, lambda, p);
+  }
+  // The same Dynamics on the branch of H_y = 0 through the multipliers nearest to `lambda` at
+  // (t, q, p); nothing where the scene has one branch only, or none is found.
+  [[nodiscard]] std::optional<Dynamics> on_branch(double t,
+                                                  const double* q,
+                                                  const double* p,
+                                                  const double* lambda) const {
+    if (calls.branch == nullptr) return std::nullopt;
+    Dynamics dynamics = *this;
+    dynamics.system = calls.branch(system.get(), t, q, p, lambda);
+    if (dynamics.system == nullptr) return std::nullopt;
+    return dynamics;
+  }
+  [[nodiscard]] bool has_branches() const { return calls.branch != nullptr; }
+
+  // With holonomic constraints only, at z = (q, p): residuals; the nearest point of the manifold,
+  // false where there is none; the orthogonal projector on its tangent space, 2n x 2n.
+  [[nodiscard]] HolonomicResiduals holonomic_residuals(double t, const double* z) const {
+    return calls.holonomic_residuals(system.get(), t, z);
+  }
+  [[nodiscard]] bool project_on_manifold(double t, double* z) const {
+    return calls.project_on_manifold(system.get(), t, z);
+  }
+  [[nodiscard]] bool tangent_projector(double t, const double* z, double* projector) const {
+    return calls.tangent_projector(system.get(), t, z, projector);
+  }
+
+  // Whether there is a direct midpoint transcription; k stands for `transcribed` in what follows.
+  [[nodiscard]] bool has_transcription() const { return calls.midpoint != nullptr; }
+  // Terms of one midpoint interval at (qm, v): r (n), c (k), V (1), stacked; jacobian row-major
+  // (n + k + 1) x 2n with respect to (qm, v), may be null.
+  [[nodiscard]] bool midpoint(const double* qm,
+                              const double* v,
+                              double* terms,
+                              double* jacobian) const {
+    return calls.midpoint(system.get(), qm, v, terms, jacobian);
+  }
+  // Gradient and Hessian of the discrete Lagrangian F_d with respect to x = (q0, q1, lambda), of
+  // length 2n + k: the discrete momenta are p0 = -gradient[0..n), p1 = gradient[n..2n). The Hessian
+  // (symmetric, (2n + k)^2) may be null.
+  void discrete_lagrangian(double h, const double* x, double* gradient, double* hessian) const {
+    calls.discrete_lagrangian(system.get(), h, x, gradient, hessian);
+  }
+  // The multipliers of the transcription at a phase point.
+  void midpoint_multipliers(const double* q, const double* p, double* lambda) const {
+    calls.midpoint_multipliers(system.get(), q, p, lambda);
+  }
+
+  struct Calls {
+    FlowReport (*flow)(const void*, const StepPlan&, double*);
+    FlowReport (*tangent_flow)(const void*, const StepPlan&, double*, double*);
+    AutomaticFlow (*automatic_flow)(const void*, double, double, double, double*);
+    BatchReport (*adaptive_batch)(const void*, double, double, double, int, double*, int);
+    FlowSummary (*monitored_flow)(const void*, const StepPlan&, double*, const MonitorOptions&);
+    PointValues (*evaluate)(const void*, double, const double*, const double*, double*, double*);
+    double (*chart)(const void*, const double*);
+    double (*momentum)(const void*, double, const double*, double*, const double*, double*);
+    std::shared_ptr<const void> (*branch)(
+        const void*, double, const double*, const double*, const double*);
+    HolonomicResiduals (*holonomic_residuals)(const void*, double, const double*);
+    bool (*project_on_manifold)(const void*, double, double*);
+    bool (*tangent_projector)(const void*, double, const double*, double*);
+    bool (*midpoint)(const void*, const double*, const double*, double*, double*);
+    void (*discrete_lagrangian)(const void*, double, const double*, double*, double*);
+    void (*midpoint_multipliers)(const void*, const double*, const double*, double*);
+  };
+  Calls calls{};
+};
+
+}  // namespace carnot

@@ -1,0 +1,43 @@
+// The flow together with its derivative M = d(q,p)(t)/d(q,p)(0), exact for the discrete map.
+#pragma once
+
+#include "carnot/flow/flow.h"
+#include "carnot/step/tangent.h"
+
+namespace carnot {
+
+// Advances z and m; start with m = identity. `m` is d z(t)/d z(0), 2n x 2n. The observer
+// is that of flow(). A tangent that cannot be formed counts as a failed rate; m is then that of the
+// step before.
+template <class Stepper, class Observer>
+FlowReport tangent_flow(
+    Stepper& stepper,
+    const StepPlan& plan,
+    State<typename Stepper::Scalar, Stepper::kDof>& z,
+    Compensated<Matrix<typename Stepper::Scalar, Stepper::kSize, Stepper::kSize>>& m,
+    Observer&& observe) {
+  Tangent<Stepper> tangent;
+  bool tangent_ok = true;
+  FlowReport report = flow(stepper, plan, z, [&](long i, const Stepper& done, const auto& state) {
+    tangent_ok = tangent.advance(done, m);
+    return tangent_ok && observe(i, done, state);
+  });
+  if (!tangent_ok) {
+    report.status = FlowStatus::kStepFailed;
+    report.last.status = StepStatus::kRateFailed;
+    report.last.rate = RateStatus::kNotFinite;
+  }
+  return report;
+}
+
+// max-norm of M'JM - J with J = (0, -I; I, 0), the sign of J z' = grad H. Zero for a symplectic M.
+template <class T, int size>
+T symplecticity_defect(const Matrix<T, size, size>& m) {
+  constexpr int n = size / 2;
+  Matrix<T, size, size> j = Matrix<T, size, size>::Zero();
+  j.template topRightCorner<n, n>() = -Matrix<T, n, n>::Identity();
+  j.template bottomLeftCorner<n, n>() = Matrix<T, n, n>::Identity();
+  return (m.transpose() * j * m - j).cwiseAbs().maxCoeff();
+}
+
+}  // namespace carnot

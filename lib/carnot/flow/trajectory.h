@@ -1,0 +1,89 @@
+// An extremal at chosen times, as plain numbers for output and plots.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "carnot/flow/flow.h"
+
+namespace carnot {
+
+// Observer of flow() that records the state at given times of the plan, in its direction. A time
+// between nodes is reached by a shortened full-order step from the node before; the run itself is
+// not touched. A sample that fails is NaN.
+template <class Stepper>
+class Recorder {
+ public:
+  using System = typename Stepper::System;
+  static constexpr int n = Stepper::kDof;
+  static constexpr int k = System::kMultipliers;
+  using Algebraic = Vector<double, System::kAlgebraic>;
+
+  // `step` is ready for the first step.
+  Recorder(const StepPlan& plan,
+           std::vector<double> times,
+           const Stepper& step,
+           const State<double, n>& z)
+      : plan_(plan), times_(std::move(times)), node_(z), branch_(step.branch()) {
+    const double tolerance = kNodeTolerance * std::abs(plan.length(0));
+    if (times_.empty() || std::abs(times_[0] - plan.start) > tolerance) return;
+    record(step.system(), times_[0], z, branch_);
+  }
+  Recorder(const StepPlan& plan, long samples, const Stepper& step, const State<double, n>& z)
+      : Recorder(plan, sample_times(plan, samples), step, z) {}
+
+  void operator()(long i, const Stepper& step, const State<double, n>& z) {
+    const double from = plan_.time(i);
+    const double to = plan_.time(i + 1);
+    const double tolerance = kNodeTolerance * std::abs(to - from);
+    while (next() < times_.size() &&
+           std::abs(times_[next()] - from) <= std::abs(to - from) + tolerance) {
+      const double t = times_[next()];
+      if (std::abs(t - to) <= tolerance) {
+        record(step.system(), t, z, step.branch());
+        continue;
+      }
+      Stepper shortened(step.system(), step.tableau());
+      shortened.start_on(branch_);
+      State<double, n> between = node_;
+      if (shortened.step(from, t - from, between).status != StepStatus::kOk) {
+        between.value.setConstant(std::numeric_limits<double>::quiet_NaN());
+      }
+      record(step.system(), t, between, shortened.branch());
+    }
+    node_ = z;
+    branch_ = step.branch();
+  }
+
+  [[nodiscard]] const Trajectory& trajectory() const { return trajectory_; }
+
+ private:
+  static constexpr double kNodeTolerance = 1e-9;  // of a step: nearer than this is the node
+
+  [[nodiscard]] std::size_t next() const { return trajectory_.t.size(); }
+
+  void record(const System& system, double t, const State<double, n>& z, Algebraic y) {
+    const Vector<double, n> q = z.value.template head<n>();
+    const Vector<double, n> p = z.value.template tail<n>();
+    Vector<double, k> lambda = Vector<double, k>::Zero();
+    Rate<double, n> rate;
+    bool ok = system.rate(t, q, p, y, rate) == RateStatus::kOk;
+    ok = ok && system.multipliers(t, q, p, y, lambda) == RateStatus::kOk;
+    trajectory_.t.push_back(t);
+    trajectory_.q.emplace_back(q.data(), q.data() + n);
+    trajectory_.p.emplace_back(p.data(), p.data() + n);
+    trajectory_.lambda.emplace_back(lambda.data(), lambda.data() + k);
+    trajectory_.hamiltonian.push_back(ok ? system.hamiltonian(t, q, p, y)
+                                         : std::numeric_limits<double>::quiet_NaN());
+  }
+
+  StepPlan plan_;
+  std::vector<double> times_;
+  State<double, n> node_;
+  Algebraic branch_;
+  Trajectory trajectory_;
+};
+
+}  // namespace carnot

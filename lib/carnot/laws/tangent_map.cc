@@ -1,0 +1,59 @@
+#include "carnot/laws/tangent_map.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+
+namespace carnot {
+namespace {
+
+using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+Square structure_matrix(int n) {
+  Square j = Square::Zero(2 * n, 2 * n);
+  j.topRightCorner(n, n) = -Square::Identity(n, n);
+  j.bottomLeftCorner(n, n) = Square::Identity(n, n);
+  return j;
+}
+
+// Steps `first`, ..., `last` - 1 of the plan.
+StepPlan piece(const StepPlan& plan, long first, long last) {
+  const double ending = last == plan.count ? plan.last : plan.step;
+  return {plan.time(first), plan.time(last), plan.step, ending, last - first};
+}
+
+}  // namespace
+
+TangentMap tangent_along(const Dynamics& dynamics,
+                         const StepPlan& plan,
+                         std::vector<double> z,
+                         const Progress& progress) {
+  constexpr long kPiece = 4096;  // steps between two calls of `progress`
+  const int n = dynamics.dof;
+  const std::vector<double> start = z;
+  TangentMap map;
+  Square m = Square::Identity(2 * n, 2 * n);
+  for (long first = 0; first < plan.count && map.status == FlowStatus::kCompleted;) {
+    const long last = std::min(plan.count, first + kPiece);
+    Square factor(2 * n, 2 * n);
+    map.status = dynamics.tangent_flow(piece(plan, first, last), z.data(), factor.data()).status;
+    m = factor * m;
+    first = last;
+    const double fraction = static_cast<double>(last) / static_cast<double>(plan.count);
+    if (progress && !progress(fraction)) map.status = FlowStatus::kStopped;
+  }
+  const Square j = structure_matrix(n);
+  map.m.assign(m.data(), m.data() + m.size());
+  Square defect = m.transpose() * j * m - j;
+  if (dynamics.forced > 0) {
+    Square projector(2 * n, 2 * n);
+    if (!dynamics.tangent_projector(plan.start, start.data(), projector.data())) {
+      map.status = FlowStatus::kStepFailed;
+    }
+    defect = projector.transpose() * defect * projector;
+  }
+  map.defect = defect.cwiseAbs().maxCoeff();
+  map.relative_defect = map.defect / std::max(1.0, m.squaredNorm());
+  return map;
+}
+
+}  // namespace carnot

@@ -1,0 +1,67 @@
+// Fixed-size vectors and matrices over any scalar: double, long double, a quad type, a ceres::Jet.
+//
+// carnot::core sets EIGEN_MAX_ALIGN_BYTES=16 for everyone who includes it, so that a program built
+// with default flags and a library built for the machine's own instruction set agree on layouts.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+#include "carnot/numerics/scalar.h"
+
+namespace carnot {
+
+template <class T, int n>
+using Vector = Eigen::Matrix<T, n, 1>;
+
+template <class T, int rows, int cols>
+using Matrix = Eigen::Matrix<T, rows, cols>;
+
+// Products as plain sums. Eigen's own start from Scalar(0), which nested ceres::Jets do not accept.
+template <class A, class B>
+auto product(const A& a, const B& b) {
+  using T = typename A::Scalar;
+  constexpr int kRows = A::RowsAtCompileTime;
+  constexpr int kInner = A::ColsAtCompileTime;
+  constexpr int kCols = B::ColsAtCompileTime;
+  static_assert(kInner == B::RowsAtCompileTime && kInner > 0);
+  Matrix<T, kRows, kCols> c;
+  for (int i = 0; i < kRows; ++i) {
+    for (int j = 0; j < kCols; ++j) {
+      T sum = a(i, 0) * b(0, j);
+      for (int k = 1; k < kInner; ++k) sum += a(i, k) * b(k, j);
+      c(i, j) = sum;
+    }
+  }
+  return c;
+}
+
+template <class T, int n>
+T dot(const Vector<T, n>& a, const Vector<T, n>& b) {
+  T sum = a[0] * b[0];
+  for (int i = 1; i < n; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+// No entry is infinite or not a number: zero times it is zero.
+template <class Derived>
+bool all_finite(const Eigen::MatrixBase<Derived>& a) {
+  using Number = std::decay_t<decltype(value_of(a(0, 0)))>;
+  Number zero(0);
+  for (int i = 0; i < a.rows(); ++i) {
+    for (int j = 0; j < a.cols(); ++j) zero += Number(0) * value_of(a(i, j));
+  }
+  return all(zero <= Number(0));
+}
+
+// A vector on somebody else's numbers.
+template <int n>
+Eigen::Map<const Vector<double, n>> view(const double* x) {
+  return Eigen::Map<const Vector<double, n>>(x, n);
+}
+template <int n>
+Eigen::Map<Vector<double, n>> view(double* x) {
+  return Eigen::Map<Vector<double, n>>(x, n);
+}
+
+}  // namespace carnot

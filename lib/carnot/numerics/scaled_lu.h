@@ -1,0 +1,102 @@
+// LU factors of a small symmetric matrix that may be indefinite, such as H_yy of a saddle.
+//
+// A = D^-1 P'L U D^-1 with partial pivoting, D diagonal such that the rows of D A D are of size
+// one: whether A counts as singular does not depend on the units of its rows. Real scalars only; on
+// Jets a constant A is applied to each component of a right-hand side.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "carnot/numerics/linear_algebra.h"
+#include "carnot/numerics/scalar.h"
+
+namespace carnot {
+
+template <class T, int m>
+class ScaledLu {
+ public:
+  explicit ScaledLu(const Matrix<T, m, m>& a) : lu_(a) {
+    using std::abs;
+    balance();
+    const T threshold = T(16 * m) * epsilon<T>();
+    for (int j = 0; j < m; ++j) {
+      int pivot = j;
+      for (int i = j + 1; i < m; ++i) {
+        if (abs(lu_(i, j)) > abs(lu_(pivot, j))) pivot = i;
+      }
+      row_[j] = pivot;
+      if (pivot != j) {
+        lu_.row(j).swap(lu_.row(pivot));
+        determinant_ = -determinant_;
+      }
+      determinant_ *= lu_(j, j) / (scale_[j] * scale_[j]);
+      regular_ = regular_ && abs(lu_(j, j)) > threshold;
+      for (int i = j + 1; i < m; ++i) {
+        lu_(i, j) /= lu_(j, j);
+        for (int k = j + 1; k < m; ++k) lu_(i, k) -= lu_(i, j) * lu_(j, k);
+      }
+    }
+  }
+
+  // False when the scaled matrix is singular to round-off, or not finite.
+  [[nodiscard]] bool regular() const { return regular_; }
+  [[nodiscard]] T determinant() const { return determinant_; }
+
+  // A^-1 b. On Jets each component of b: A is a constant.
+  template <class U>
+  [[nodiscard]] Vector<U, m> solve(const Vector<U, m>& b) const {
+    if constexpr (kIsJet<U>) {
+      Vector<typename U::Scalar, m> part;
+      Vector<U, m> x;
+      for (int i = 0; i < m; ++i) part[i] = b[i].a;
+      part = solve(part);
+      for (int i = 0; i < m; ++i) x[i].a = part[i];
+      for (int d = 0; d < U::DIMENSION; ++d) {
+        for (int i = 0; i < m; ++i) part[i] = b[i].v[d];
+        part = solve(part);
+        for (int i = 0; i < m; ++i) x[i].v[d] = part[i];
+      }
+      return x;
+    } else {
+      Vector<T, m> x = b.cwiseProduct(scale_);
+      for (int i = 0; i < m; ++i) std::swap(x[i], x[row_[i]]);
+      for (int i = 1; i < m; ++i) {
+        for (int k = 0; k < i; ++k) x[i] -= lu_(i, k) * x[k];
+      }
+      for (int i = m - 1; i >= 0; --i) {
+        for (int k = i + 1; k < m; ++k) x[i] -= lu_(i, k) * x[k];
+        x[i] /= lu_(i, i);
+      }
+      return x.cwiseProduct(scale_);
+    }
+  }
+
+ private:
+  // Ruiz' iteration: each sweep takes the square root of the distance of the row sizes from 1.
+  void balance() {
+    using std::abs, std::sqrt;
+    constexpr int kSweeps = 3;
+    scale_.setConstant(T(1));
+    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+      Vector<T, m> d;
+      for (int i = 0; i < m; ++i) {
+        const T size = lu_.row(i).cwiseAbs().maxCoeff();
+        d[i] = size > T(0) ? T(1) / sqrt(size) : T(1);
+      }
+      for (int i = 0; i < m; ++i) {
+        for (int j = 0; j < m; ++j) lu_(i, j) *= d[i] * d[j];
+      }
+      scale_ = scale_.cwiseProduct(d).eval();
+    }
+  }
+
+  Matrix<T, m, m> lu_;
+  Vector<T, m> scale_;
+  std::array<int, m> row_;
+  T determinant_ = T(1);
+  bool regular_ = true;
+};
+
+}  // namespace carnot

@@ -1,0 +1,173 @@
+// The tangent of one RATTLE step, and what it keeps: the symplectic form of the manifold.
+//
+// Each substep of rattle.h is differentiated at its solution. With A = df/dz(U), D = Dh and N the
+// second derivative of nu.h,
+//
+//   (I - h A/2) dU + (0, D0' dnu0) = (dq0, dp0 - N0 dq0),     2 D1 dU_q = D1 dq0,
+//   (dq1, dp'') = (dq0, dp0 - N0 dq0 - D0' dnu0) + h A dU,
+//   dp1 = dp'' - N1 dq1 - D1' dnu1,                            d(Dh H_p)(q1, p1) (dq1, dp1) = 0,
+//
+// a map of all of R^2n into the tangent space of the manifold at (q1, p1). J A and N are symmetric,
+// D0 dq0 = 0 and D1 dq1 = 0 on the manifold, so there it is symplectic. Cost per substep: two rates
+// on Jets with 2n directions, one LU of size 2n + l.
+#pragma once
+
+#include <array>
+
+#include "carnot/step/rattle.h"
+#include "carnot/step/tangent.h"
+
+namespace carnot {
+
+template <class System_, class T_>
+class Tangent<Rattle<System_, T_>> {
+ public:
+  using Step = Rattle<System_, T_>;
+  using T = T_;
+  static constexpr int kSize = Step::kSize;
+  using Square = Matrix<T, kSize, kSize>;
+
+  // M <- (dz+/dz) M for the step that `step` has just done. False when a linear system is
+  // singular; M is then unchanged.
+  [[nodiscard]] bool advance(const Step& step, Compensated<Square>& m) {
+    Compensated<Square> next = m;
+    for (int i = 0; i < step.tableau().stages(); ++i) {
+      if (!kick_and_move(step, i, next) || !kick_back(step, i, next)) return false;
+    }
+    m = next;
+    return true;
+  }
+
+ private:
+  static constexpr int n = Step::kDof;
+  static constexpr int l = Step::kHolonomic;
+  static constexpr int kUnknowns = Step::Midpoint::kUnknowns;
+  using Columns = Matrix<T, n, kSize>;
+
+  static Vector<T, n> configuration(const Step& step, int node) {
+    return step.node(node).template head<n>();
+  }
+
+  // The second derivative of nu.h at a node.
+  static Matrix<T, n, n> bend(const Step& step, int node, const Vector<T, l>& nu) {
+    const auto hessians = holonomic_hessians(step.system().scene(), configuration(step, node));
+    Matrix<T, n, n> sum = nu[0] * hessians[0];
+    for (int i = 1; i < l; ++i) sum += nu[i] * hessians[i];
+    return sum;
+  }
+
+  // (dq0, dp0) -> (dq1, dp'').
+  bool kick_and_move(const Step& step, int i, Compensated<Square>& m) {
+    const auto& scene = step.system().scene();
+    const T h = step.last_step() * step.tableau().b[i];
+    Square a;
+    const RateStatus status = phase_jacobian(step.system(),
+                                             step.stage_time(i),
+                                             Vector<T, kSize>(step.stages().col(i)),
+                                             step.algebraic(i),
+                                             a);
+    if (status != RateStatus::kOk) return false;
+    const Matrix<T, l, n> dh0 = holonomic_jacobian(scene, configuration(step, i));
+    const Matrix<T, l, n> dh1 = holonomic_jacobian(scene, configuration(step, i + 1));
+    const Square start = m.value + m.compensation;
+    const Columns dq0 = start.template topRows<n>();
+    const Columns kick = product(bend(step, i, step.impulse_before(i)), dq0);
+    const Matrix<T, l, kSize> turned = product(dh1, dq0);
+    for (int j = 0; j < kSize; ++j) {
+      for (int r = 0; r < kSize; ++r) at(r, j) = start(r, j) - (r < n ? T(0) : kick(r - n, j));
+      for (int r = 0; r < l; ++r) at(kSize + r, j) = turned(r, j);
+    }
+    Step::Midpoint::kkt_matrix(h, a, dh0, dh1, matrix_);
+    if (!lu_solve(kUnknowns, matrix_.data(), kSize, solution_.data())) return false;
+    Square du;
+    Matrix<T, l, kSize> dnu;
+    for (int j = 0; j < kSize; ++j) {
+      for (int r = 0; r < kSize; ++r) du(r, j) = at(r, j);
+      for (int r = 0; r < l; ++r) dnu(r, j) = at(kSize + r, j);
+    }
+    Square increment = h * product(a, du);
+    increment.template bottomRows<n>() -= kick + product(dh0.transpose(), dnu);
+    if (!increment.allFinite()) return false;
+    m.add(increment);
+    return true;
+  }
+
+  // (dq1, dp'') -> (dq1, dp1).
+  bool kick_back(const Step& step, int i, Compensated<Square>& m) {
+    const auto& scene = step.system().scene();
+    const Vector<T, n> q = configuration(step, i + 1);
+    Vector<T, System_::kAlgebraic> y = step.node_algebraic(i + 1);
+    Vector<T, kSize> rate;
+    Square jacobian;
+    const T t = step.node_time(i + 1);
+    if (phase_rate(step.system(), t, step.node(i + 1), y, rate) != RateStatus::kOk) return false;
+    if (phase_jacobian(step.system(), t, step.node(i + 1), y, jacobian) != RateStatus::kOk) {
+      return false;
+    }
+    const Vector<T, n> v = rate.template head<n>();
+    const Matrix<T, l, kSize> hidden = hidden_jacobian(scene, q, v, jacobian);
+    const Matrix<T, l, n> dh = holonomic_jacobian(scene, q);
+    Matrix<T, l, l> inverse;
+    const Matrix<T, n, n> h_pp = jacobian.template topRightCorner<n, n>();
+    if (!invert_normal_mass(dh, h_pp, inverse)) return false;
+
+    Square moved = m.value + m.compensation;
+    const Columns dq = moved.template topRows<n>();
+    const Columns kick = product(bend(step, i + 1, step.impulse_after(i)), dq);
+    moved.template bottomRows<n>() -= kick;
+    const Matrix<T, l, kSize> violated = product(hidden, moved);
+    const Matrix<T, l, kSize> dnu = product(inverse, violated);
+    Square increment = Square::Zero();
+    increment.template bottomRows<n>() = -kick - product(dh.transpose(), dnu);
+    m.add(increment);
+    return true;
+  }
+
+  T& at(int i, int j) { return solution_[i * kSize + j]; }
+
+  // Scratch.
+  typename Step::Midpoint::KktMatrix matrix_;
+  std::array<T, kUnknowns * kSize> solution_;  // row-major
+};
+
+// The orthogonal projector P of R^2n onto the tangent space of {h = 0, Dh H_p = 0} at (q, p), which
+// must lie on it: I - C'(C C')^-1 C with C the derivatives of both. False where they are dependent.
+template <HolonomicSystem System, class T>
+[[nodiscard]] bool manifold_projector(const System& system,
+                                      const T& t,
+                                      const Vector<T, 2 * System::kDof>& z,
+                                      Matrix<T, 2 * System::kDof, 2 * System::kDof>& projector) {
+  constexpr int n = System::kDof;
+  constexpr int l = kHolonomicOf<System>;
+  Vector<T, System::kAlgebraic> y = Vector<T, System::kAlgebraic>::Zero();
+  Vector<T, 2 * n> rate;
+  Matrix<T, 2 * n, 2 * n> jacobian;
+  if (phase_rate(system, t, z, y, rate) != RateStatus::kOk) return false;
+  if (phase_jacobian(system, t, z, y, jacobian) != RateStatus::kOk) return false;
+  const Vector<T, n> q = z.template head<n>();
+  const Vector<T, n> v = rate.template head<n>();
+  Matrix<T, 2 * l, 2 * n> c = Matrix<T, 2 * l, 2 * n>::Zero();
+  c.template topLeftCorner<l, n>() = holonomic_jacobian(system.scene(), q);
+  c.template bottomRows<l>() = hidden_jacobian(system.scene(), q, v, jacobian);
+  Matrix<T, 2 * l, 2 * l> inverse;
+  projector.setIdentity();
+  if (!invert_normal_mass(c, projector, inverse)) return false;
+  const Matrix<T, 2 * l, 2 * n> dual = product(inverse, c);
+  projector -= product(c.transpose(), dual);
+  return true;
+}
+
+// max-norm of P'(M'JM - J)P: how far M, a derivative of the flow from a point where P projects on
+// the tangent space, is from keeping the symplectic form of the manifold.
+template <class T, int size>
+T manifold_symplecticity_defect(const Matrix<T, size, size>& m,
+                                const Matrix<T, size, size>& projector) {
+  constexpr int n = size / 2;
+  Matrix<T, size, size> j = Matrix<T, size, size>::Zero();
+  j.template topRightCorner<n, n>() = -Matrix<T, n, n>::Identity();
+  j.template bottomLeftCorner<n, n>() = Matrix<T, n, n>::Identity();
+  const Matrix<T, size, size> defect = product(m.transpose(), product(j, m)) - j;
+  return product(projector, product(defect, projector)).cwiseAbs().maxCoeff();
+}
+
+}  // namespace carnot

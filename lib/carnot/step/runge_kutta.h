@@ -1,0 +1,386 @@
+// One step of any Runge-Kutta method, given as a Tableau, on an index-1 system.
+//
+// A Runge-Kutta method applied to J z' = grad H(z), J singular, solves H_y = 0 at every stage, so
+// it equals the method applied to the system with y eliminated (McLachlan et al. 2013, Prop. 4):
+// order, symplecticity and constraints follow; of a partitioned method the multipliers belong to
+// the pairs (Q_i, P_i) (their section 7). With L_i = h omega_i f(U_i) a step reads
+//
+//   U_i = z + e + sum_j mu_ij L_j,      z+ = z + e + sum_j u_j L_j,
+//
+// where e is the rounding error that the last updates left (compensated summation). Implicit stages
+// are found by fixed-point iteration, started from the extrapolated collocation polynomial of the
+// last step, or from the stage before. It goes on while for some component the largest change over
+// the stages is still falling (Antonana, Makazaga & Murua 2017), so it ends at round-off whatever
+// the scale of the components; or, where a run is asked for a tolerance, until no stage changes by
+// more than stop_at(). If that is not reached, or slowly, Newton's method takes over
+// (stage_newton.h).
+//
+// Rates of coupled stages are evaluated side by side in packs where the system allows it, and one
+// by one where one of them fails, which tells the reason.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <limits>
+#include <type_traits>
+
+#include "carnot/step/packed_stages.h"
+#include "carnot/step/stage_equations.h"
+#include "carnot/step/stage_newton.h"
+#include "carnot/step/step_report.h"
+#include "carnot/step/stopping_rule.h"
+#include "carnot/system/packed_rate.h"
+#include "carnot/system/phase_space.h"
+#include "carnot/tableau/tableau.h"
+
+namespace carnot {
+
+// s: the number of stages where the compiler is to know it (full coupling only), else kAnyStages.
+template <class System_, int s = kAnyStages, class T = double>
+class RungeKutta {
+ public:
+  using System = System_;
+  using Scalar = T;
+  static constexpr int kDof = System::kDof;
+  static constexpr int kSize = 2 * kDof;
+  static constexpr int kMaxStages = s == kAnyStages ? kMostStages : s;
+  static constexpr int kMaxCoupled = s == kAnyStages ? kMostCoupledStages : s;
+  static constexpr int kLanes = 8;
+  static constexpr bool kPacks = PacksRates<System> && std::is_same_v<T, double>;
+  static constexpr bool kRows = kPacks && s == kLanes;  // stages lie in memory as packs do
+  using Point = Vector<T, kSize>;
+  using Algebraic = Vector<T, System::kAlgebraic>;
+  using Stages = StageRows<T, kSize, s, kMaxStages>;  // a column each
+
+  // Keeps references to both.
+  RungeKutta(const System& system, const Tableau<T, s>& tableau)
+      : system_(system), tableau_(tableau) {
+    assert(tableau.coupling == Coupling::kFull || (s == kAnyStages && !tableau.partitioned));
+    assert(tableau.stages() <= (coupled() ? kMaxCoupled : kMaxStages));
+    stages_ = Stages::Zero(kSize, tableau.stages());
+    increments_ = stages_;
+    algebraic_.resize(System::kAlgebraic, tableau.stages());
+    start_on(Algebraic::Zero());
+  }
+  RungeKutta(const System& system, Tableau<T, s>&& tableau) = delete;  // would dangle
+
+  // The branch of H_y = 0 to begin with; zero leaves the choice to the system.
+  void start_on(const Algebraic& y) {
+    algebraic_.colwise() = y;
+    branch_ = y;
+    last_step_ = T(0);
+  }
+  // The largest change of a stage, in absolute value, at which the iteration ends; 0: at round-off.
+  void stop_at(T change) { stop_ = change; }
+  // A first guess for steps so long that the polynomial of the last one is no good beyond it.
+  void extrapolate_cautiously() { extrapolation_ = &tableau_.cautious; }
+  // Gives up after so many iterations; no Newton's method.
+  void only_iterate(int most) {
+    most_iterations_ = most;
+    with_newton_ = false;
+  }
+  // y at the last stage of the last successful step.
+  [[nodiscard]] const Algebraic& branch() const { return branch_; }
+
+  // Advances z from t to t + h. On failure z and the branch are unchanged. Allocates nothing.
+  [[nodiscard]] StepReport step(const T& t, const T& h, State<T, kDof>& z) {
+    StepReport report;
+    if (!all_finite(z.value)) (void)fail(RateStatus::kNotFinite, report);
+    if (report.status != StepStatus::kOk) return report;
+    const int count = tableau_.stages();
+    if (coupled()) {
+      solve({t, h, z, 0, count}, report);
+    } else {
+      for (int i = 0; i < count && report.status == StepStatus::kOk; ++i) {
+        solve({t, h, z, i, 1}, report);
+      }
+    }
+    State<T, kDof> end = z;
+    if (report.status == StepStatus::kOk) {
+      end.add(sum_of_increments(tableau_, increments_));
+      if (!all_finite(end.value)) (void)fail(RateStatus::kNotFinite, report);
+    }
+    if (report.status != StepStatus::kOk) {
+      start_on(branch_);
+      return report;
+    }
+    z = end;
+    start_time_ = t;
+    last_step_ = h;
+    branch_ = algebraic_.col(count - 1);
+    return report;
+  }
+
+  // What the last successful step left: U_i, h omega_i f(U_i), y_i, at times start + c_i h. After a
+  // failure there is nothing to be read here, and last_step() is zero.
+  [[nodiscard]] const System& system() const { return system_; }
+  [[nodiscard]] const Tableau<T, s>& tableau() const { return tableau_; }
+  [[nodiscard]] const Stages& stages() const { return stages_; }
+  [[nodiscard]] const Stages& increments() const { return increments_; }
+  [[nodiscard]] Algebraic algebraic(int i) const { return algebraic_.col(i); }
+  [[nodiscard]] T stage_time(int i) const { return start_time_ + tableau_.c[i] * last_step_; }
+  [[nodiscard]] T last_step() const { return last_step_; }
+
+ private:
+  friend class StageNewton<T, kSize, kMaxCoupled>;
+  static constexpr int kMaxIterations = 100;
+
+  // Stages that are found together: `count` from `first` on, of the step of h from z at t. They
+  // depend on each other and on those before.
+  struct Block {
+    const T& t;
+    const T& h;
+    const State<T, kDof>& z;
+    int first;
+    int count;
+
+    [[nodiscard]] int begin() const { return s == kAnyStages ? first : 0; }
+    [[nodiscard]] int end() const { return s == kAnyStages ? first + count : s; }
+    // The columns of these stages, a fixed number where s is fixed.
+    template <class M>
+    [[nodiscard]] auto of(M& all) const {
+      return all.template middleCols<s>(begin(), end() - begin());
+    }
+  };
+
+  [[nodiscard]] bool coupled() const {
+    return s != kAnyStages || tableau_.coupling == Coupling::kFull;
+  }
+  static bool fail(RateStatus rate, StepReport& report) {
+    report.status = StepStatus::kRateFailed;
+    report.rate = rate;
+    return false;
+  }
+
+  void solve(const Block& block, StepReport& report) {
+    if (!coupled() && tableau_.coupling == Coupling::kExplicit) {
+      warm_start(block.first);
+      set_stages(block, stages_);
+      evaluate(block, block.first, report);
+      return;
+    }
+    const bool repeated = last_step_ == block.h && last_step_ != T(0);
+    if (!predict(block, repeated, report)) return;
+    if (iterate(block, report)) return;
+    // The iteration may have run away, even to where the rate fails: Newton begins again.
+    if (!with_newton_) {
+      if (report.status == StepStatus::kOk) report.status = StepStatus::kStagesDiverged;
+      return;
+    }
+    newton(block, report);
+  }
+
+  // U of the block from the increments.
+  void set_stages(const Block& block, Stages& u) const {
+    if (coupled()) {
+      stage_arguments(tableau_, increments_, block.z, u);
+    } else if constexpr (s == kAnyStages) {
+      u.col(block.first) = stage_argument(tableau_, increments_, block.z, block.first);
+    }
+  }
+
+  // y_i and L_i at U_i.
+  bool evaluate(const Block& block, int i, StepReport& report) {
+    const T time = block.t + tableau_.c[i] * block.h;
+    const Point u = stages_.col(i);
+    Point f;
+    Algebraic y = algebraic_.col(i);
+    const RateStatus rate = phase_rate(system_, time, u, y, f);
+    ++report.evaluations;
+    if (rate != RateStatus::kOk) return fail(rate, report);
+    report.rate = rate;
+    algebraic_.col(i) = y;
+    increments_.col(i) = (block.h * tableau_.omega[i]) * f;
+    return true;
+  }
+
+  // The same for all stages of the block.
+  bool evaluate_all(const Block& block, StepReport& report) {
+    if constexpr (kPacks) {
+      if (block.end() - block.begin() > 1) {
+        if (evaluate_packs(block, report)) return true;
+        if (!with_newton_) return fail(RateStatus::kNotFinite, report);
+      }
+    }
+    for (int i = block.begin(); i < block.end(); ++i) {
+      if (!evaluate(block, i, report)) return false;
+    }
+    return true;
+  }
+
+  // Side by side, eight at a time. False where a rate fails.
+  bool evaluate_packs(const Block& block, StepReport& report) {
+    for (int first = block.begin(); first < block.end(); first += kLanes) {
+      const int count = std::min(kLanes, block.end() - first);
+      std::array<T, kLanes> time;
+      for (int l = 0; l < count; ++l) time[l] = block.t + tableau_.c[first + l] * block.h;
+      const double* const t = time.data();
+      if (!packed_columns(system_, t, first, count, stages_, algebraic_, increments_)) return false;
+      for (int i = first; i < first + count; ++i) {
+        increments_.col(i) *= block.h * tableau_.omega[i];
+      }
+      report.evaluations += count;
+    }
+    report.rate = RateStatus::kOk;
+    return true;
+  }
+
+  // y of the stage before: for stages that are found one after the other.
+  void warm_start(int i) {
+    if (i == 0) {
+      algebraic_.col(0) = branch_;
+    } else {
+      algebraic_.col(i) = algebraic_.col(i - 1);
+    }
+  }
+
+  // First guess of the increments: from the last step, where this one repeats its length, or from
+  // the rate at the start; of stages that are found one after the other, from the stage before.
+  bool predict(const Block& block, bool repeated, StepReport& report) {
+    if (coupled()) {
+      if (!repeated) return constant_guess(block, report);
+      if constexpr (kRows) {
+        packed_extrapolation<kSize, s>(extrapolation_->data(), increments_.data());
+      } else {
+        increments_ = Stages(increments_.lazyProduct(extrapolation_->transpose()));
+      }
+      return true;
+    }
+    const int i = block.first;
+    warm_start(i);
+    if (i == 0 && !repeated) return constant_guess(block, report);
+    const int before = i == 0 ? tableau_.stages() - 1 : i - 1;
+    increments_.col(i) = (tableau_.omega[i] / tableau_.omega[before]) * increments_.col(before);
+    return true;
+  }
+
+  // The rate at the start of the step, for every stage of the block.
+  bool constant_guess(const Block& block, StepReport& report) {
+    Point f;
+    Algebraic y = branch_;
+    const RateStatus rate = phase_rate(system_, block.t, block.z.value, y, f);
+    ++report.evaluations;
+    if (rate != RateStatus::kOk) return fail(rate, report);
+    for (int i = block.begin(); i < block.end(); ++i) {
+      algebraic_.col(i) = y;
+      increments_.col(i) = (block.h * tableau_.omega[i]) * f;
+    }
+    return true;
+  }
+
+  // One iteration: new stages, and the increments there. Largest change of a stage, NaN where a
+  // rate fails; `change` is that of each component, where it is asked for.
+  T sweep(const Block& block, Stages& next, Point* change, StepReport& report) {
+    if constexpr (kRows) {
+      const Sweep sweep = packed_sweep<System, s>(system_,
+                                                  times_.data(),
+                                                  tableau_.mu.data(),
+                                                  weights_.data(),
+                                                  block.z.value.data(),
+                                                  block.z.compensation.data(),
+                                                  stages_.data(),
+                                                  algebraic_.data(),
+                                                  increments_.data(),
+                                                  change == nullptr ? nullptr : change->data());
+      report.evaluations += kLanes;
+      if (sweep.ok || (with_newton_ && evaluate_all(block, report))) return sweep.change;
+      if (!with_newton_) (void)fail(RateStatus::kNotFinite, report);
+      return std::numeric_limits<T>::quiet_NaN();
+    } else {
+      set_stages(block, next);
+      const Point moved = (block.of(next) - block.of(stages_)).cwiseAbs().rowwise().maxCoeff();
+      if (change != nullptr) *change = moved;
+      block.of(stages_) = block.of(next);
+      if (!evaluate_all(block, report)) return std::numeric_limits<T>::quiet_NaN();
+      return moved.maxCoeff();
+    }
+  }
+
+  // Fixed point. True when the stages have settled.
+  bool iterate(const Block& block, StepReport& report) {
+    for (int i = 0; i < kSize; ++i) {
+      for (int j = block.begin(); j < block.end(); ++j) {
+        stages_(i, j) = std::numeric_limits<T>::max();
+      }
+    }
+    if constexpr (kRows) {
+      for (int j = 0; j < s; ++j) {
+        times_[j] = block.t + block.h * tableau_.c[j];
+        weights_[j] = block.h * tableau_.omega[j];
+      }
+    }
+    return stop_ > T(0) ? iterate_to_tolerance(block, report) : iterate_to_round_off(block, report);
+  }
+
+  // By the changes of two iterations: so slowly that Newton's method is faster.
+  bool contracts_poorly(int iteration, T change) {
+    constexpr int kJudged = 12;
+    constexpr T kPoor = T(0.02);  // 0.7 an iteration
+    if (iteration == 1) first_change_ = change;
+    return with_newton_ && iteration == kJudged && !(change <= kPoor * first_change_);
+  }
+
+  bool iterate_to_tolerance(const Block& block, StepReport& report) {
+    constexpr T kRunsAway = 4;  // changes that grow by this are not going to settle
+    Stages next = stages_;
+    T limit = std::numeric_limits<T>::infinity();
+    for (int iteration = 0; iteration < most_iterations_; ++iteration) {
+      const T change = sweep(block, next, nullptr, report);
+      if (!(change <= limit)) return false;
+      if (change <= stop_) return true;
+      if (iteration == 1) limit = kRunsAway * change;
+      if (contracts_poorly(iteration, change)) return false;
+    }
+    return false;
+  }
+
+  bool iterate_to_round_off(const Block& block, StepReport& report) {
+    using Rule = StoppingRule<T, kSize>;
+    Rule rule;
+    Stages next = stages_;
+    Point change;
+    for (int iteration = 0; iteration < most_iterations_; ++iteration) {
+      const T most = sweep(block, next, &change, report);
+      if (!(most >= T(0)) || contracts_poorly(iteration, most)) return false;
+      const auto verdict = rule(change);
+      if (verdict == Rule::Verdict::kAtRest) return true;
+      if (verdict == Rule::Verdict::kStalled) return settled(block, change);
+    }
+    return false;
+  }
+
+  // Stalled changes must be round-off of the stages, else the iteration did not contract.
+  [[nodiscard]] bool settled(const Block& block, const Point& change) const {
+    constexpr int kRoundOff = 1000;
+    const T scale = block.of(stages_).cwiseAbs().maxCoeff();
+    const T limit = T(kRoundOff) * std::numeric_limits<T>::epsilon() * scale;
+    return (change.array() < limit).all();  // false for a NaN and for infinite stages
+  }
+
+  void newton(const Block& block, StepReport& report) {
+    report.newton = true;
+    if (coupled() && newton_.simplified(*this, block, report)) return;
+    if (newton_.full(*this, block, report) || report.status != StepStatus::kOk) return;
+    report.status = StepStatus::kStagesDiverged;
+  }
+
+  const System& system_;
+  const Tableau<T, s>& tableau_;
+  const StageMatrix<T, s>* extrapolation_ = &tableau_.extrapolation;
+  alignas(64) Stages stages_;
+  alignas(64) Stages increments_;
+  alignas(64) StageRows<T, System::kAlgebraic, s, kMaxStages> algebraic_;
+  alignas(64) StageVector<T, s> times_;    // t + c_i h, of stages in rows,
+  alignas(64) StageVector<T, s> weights_;  // h omega_i
+  Algebraic branch_;
+  T stop_ = T(0);
+  T first_change_ = T(0);
+  int most_iterations_ = kMaxIterations;
+  bool with_newton_ = true;
+  T start_time_ = T(0);
+  T last_step_ = T(0);
+  StageNewton<T, kSize, kMaxCoupled> newton_;
+};
+
+}  // namespace carnot

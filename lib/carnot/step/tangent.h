@@ -1,0 +1,249 @@
+// The tangent of one step: exact derivative of the discrete map.
+//
+// Differentiating the step of runge_kutta.h at its converged stages, with A_i = h omega_i
+// df/dz(U_i),
+//
+//   dL_i = A_i (dz + sum_j mu_ij dL_j),      dz+ = dz + sum_j u_j dL_j,
+//
+// a linear system. Coupled stages are solved to round-off by the same fixed point, or by one LU
+// where that does not contract; the others one after the other. A_i is symmetric after
+// multiplication with J, so dz+ is symplectic exactly when mu_ij + mu_p_ji = 1. Cost: s rates on
+// Jets with 2n directions and about ten products of 2n x 2n matrices per stage.
+#pragma once
+
+#include <array>
+#include <utility>
+
+#include "carnot/step/runge_kutta.h"
+
+namespace carnot {
+
+template <class Step>
+class Tangent {
+ public:
+  using T = typename Step::Scalar;
+  static constexpr int kSize = Step::kSize;
+  static constexpr int kDof = Step::kDof;
+  using Square = Matrix<T, kSize, kSize>;
+
+  // M <- (dz+/dz) M for the step that `step` has just done. False when the linear system is
+  // singular or its solution not finite; M is then unchanged.
+  [[nodiscard]] bool advance(const Step& step, Compensated<Square>& m) {
+    const T h = step.last_step();
+    const T in_packs_before = std::exchange(packed_step_, T(0));
+    const T plain_before = std::exchange(plain_step_, T(0));
+    count_ = step.tableau().stages();
+    Square sum;
+    if (in_packs(step, h != T(0) && in_packs_before == h, m, sum)) {
+      packed_step_ = h;
+    } else {
+      const bool repeated = h != T(0) && plain_before == h;
+      if (!linearize(step)) return false;
+      const bool coupled = step.tableau().coupling == Coupling::kFull;
+      if (!(coupled ? iterate(step, repeated, m) || solve(step, m) : solve_in_turn(step, m))) {
+        return false;
+      }
+      sum = step.tableau().update[0] * increment_[0];
+      for (int i = 1; i < count_; ++i) sum += step.tableau().update[i] * increment_[i];
+    }
+    if (!sum.allFinite()) return false;
+    if (packed_step_ == T(0)) plain_step_ = h;
+    m.add(sum);
+    return true;
+  }
+
+ private:
+  static constexpr int kMaxIterations = 60;
+
+  // A_i of all stages.
+  bool linearize(const Step& step) {
+    for (int i = 0; i < count_; ++i) {
+      const RateStatus status = phase_jacobian(step.system(),
+                                               step.stage_time(i),
+                                               Vector<T, kSize>(step.stages().col(i)),
+                                               step.algebraic(i),
+                                               jacobian_[i]);
+      if (status != RateStatus::kOk) return false;
+      const T weight = step.last_step() * step.tableau().omega[i];
+      jacobian_[i] = weight * jacobian_[i];
+    }
+    return true;
+  }
+
+  // All stages side by side. False where that is not possible or does not settle.
+  bool in_packs(const Step& step, bool repeated, const Compensated<Square>& m, Square& sum) {
+    if constexpr (!Step::kRows) {
+      return false;
+    } else {
+      constexpr int s = Step::kLanes;
+      const T h = step.last_step();
+      alignas(64) std::array<T, s> time;
+      alignas(64) std::array<T, s> weights;
+      for (int l = 0; l < s; ++l) {
+        time[l] = step.stage_time(l);
+        weights[l] = h * step.tableau().omega[l];
+      }
+      if (!packed_jacobian<s>(
+              step.system(), time.data(), step.stages().data(), weights.data(), rows_.data())) {
+        return false;
+      }
+      const auto& tableau = step.tableau();
+      if (repeated) {
+        packed_extrapolation<kSize * kSize, s>(tableau.extrapolation.data(), tangents_.data());
+      } else {
+        tangents_.fill(T(0));
+      }
+      const auto sweep = [&] {
+        return packed_tangent_sweep<kSize, s>(tableau.mu.data(),
+                                              rows_.data(),
+                                              m.value.data(),
+                                              m.compensation.data(),
+                                              tangents_.data());
+      };
+      if (!settles(m, sweep)) return false;
+      using Rows = Eigen::Matrix<T, kSize * kSize, s, Eigen::RowMajor>;
+      const Vector<T, kSize* kSize> total =
+          Eigen::Map<const Rows>(tangents_.data()).rowwise().sum();
+      sum = Eigen::Map<const Square>(total.data());
+      return sum.allFinite();
+    }
+  }
+
+  // Repeats sweep(), which returns the largest change, until that is round-off.
+  template <class Sweep>
+  bool settles(const Compensated<Square>& m, const Sweep& sweep) {
+    const T resolution = std::numeric_limits<T>::epsilon() * m.value.cwiseAbs().maxCoeff();
+    T smallest = std::numeric_limits<T>::max();
+    for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+      const T change = sweep();
+      if (change <= T(0.25) * resolution) return true;
+      if (!(change < smallest)) break;
+      smallest = change;
+    }
+    return smallest <= T(8) * resolution;
+  }
+
+  // sum += mu_ij dL_j.
+  static void add_stage(const Step& step, int i, int j, const Square& increment, Square& sum) {
+    const T mu = step.tableau().mu(i, j);
+    if (!step.tableau().partitioned) {
+      sum += mu * increment;
+      return;
+    }
+    const T momentum_mu = step.tableau().mu_p(i, j);
+    for (int c = 0; c < kSize; ++c) {
+      for (int r = 0; r < kDof; ++r) sum(r, c) += mu * increment(r, c);
+      for (int r = kDof; r < kSize; ++r) sum(r, c) += momentum_mu * increment(r, c);
+    }
+  }
+
+  // First guess, as for the stages: extrapolated from the last step, or A_i dz.
+  void predict(const Step& step, bool repeated, const Compensated<Square>& m) {
+    if (!repeated) {
+      for (int i = 0; i < count_; ++i) increment_[i] = jacobian_[i].lazyProduct(m.value);
+      return;
+    }
+    std::swap(increment_, last_);
+    for (int i = 0; i < count_; ++i) {
+      increment_[i] = step.tableau().extrapolation(i, 0) * last_[0];
+      for (int j = 1; j < count_; ++j) {
+        increment_[i] += step.tableau().extrapolation(i, j) * last_[j];
+      }
+    }
+  }
+
+  bool iterate(const Step& step, bool repeated, const Compensated<Square>& m) {
+    predict(step, repeated, m);
+    return settles(m, [&] {
+      T change(0);
+      std::swap(increment_, last_);
+      for (int i = 0; i < count_; ++i) {
+        Square argument = m.compensation;
+        for (int j = 0; j < count_; ++j) add_stage(step, i, j, last_[j], argument);
+        argument += m.value;
+        increment_[i] = jacobian_[i].lazyProduct(argument);
+        const T moved = (increment_[i] - last_[i]).cwiseAbs().maxCoeff();
+        if (!(moved <= change)) change = moved;  // NaN, too
+      }
+      return change;
+    });
+  }
+
+  // (I - A_i mu_ij) dL = A_i dz, all stages at once.
+  bool solve(const Step& step, const Compensated<Square>& m) {
+    for (int i = 0; i < count_; ++i) {
+      increment_[i] = jacobian_[i].lazyProduct(m.value);
+      set_rhs(i, increment_[i]);
+      for (int j = 0; j < count_; ++j) set_block(step, i, j, i, j, count_);
+    }
+    return lu(0, count_);
+  }
+
+  // The same stage by stage, where a stage depends on those before it alone.
+  bool solve_in_turn(const Step& step, const Compensated<Square>& m) {
+    for (int i = 0; i < count_; ++i) {
+      Square argument = m.compensation;
+      for (int j = 0; j < i; ++j) add_stage(step, i, j, increment_[j], argument);
+      argument += m.value;
+      increment_[i] = jacobian_[i].lazyProduct(argument);
+      if (step.tableau().coupling == Coupling::kExplicit) continue;
+      set_rhs(0, increment_[i]);
+      set_block(step, i, i, 0, 0, 1);
+      if (!lu(i, 1)) return false;
+    }
+    return true;
+  }
+
+  // Block `block` of the right-hand sides.
+  void set_rhs(int block, const Square& value) {
+    T* to = rhs_.data() + block * kSize * kSize;
+    for (int r = 0; r < kSize; ++r) {
+      for (int c = 0; c < kSize; ++c) *to++ = value(r, c);
+    }
+  }
+
+  // The block of dL_j in the equation of dL_i, put at (row, column) of `blocks` blocks.
+  void set_block(const Step& step, int i, int j, int row, int column, int blocks) {
+    for (int r = 0; r < kSize; ++r) {
+      for (int c = 0; c < kSize; ++c) {
+        const T identity(i == j && r == c ? 1 : 0);
+        const T mu = c < kDof ? step.tableau().mu(i, j) : step.tableau().momentum_mu(i, j);
+        matrix_[(row * kSize + r) * kSize * blocks + column * kSize + c] =
+            identity - mu * jacobian_[i](r, c);
+      }
+    }
+  }
+
+  // Solves for the increments first, ..., first + blocks - 1.
+  bool lu(int first, int blocks) {
+    if (!lu_solve(kSize * blocks, matrix_.data(), kSize, rhs_.data())) return false;
+    bool finite = true;
+    const T* from = rhs_.data();
+    for (int i = first; i < first + blocks; ++i) {
+      for (int r = 0; r < kSize; ++r) {
+        for (int c = 0; c < kSize; ++c) increment_[i](r, c) = *from++;
+      }
+      finite = finite && increment_[i].allFinite();
+    }
+    return finite;
+  }
+
+  int count_ = 0;
+  // Lengths of the step whose increments are there, side by side or one by one; 0: none.
+  T packed_step_ = T(0);
+  T plain_step_ = T(0);
+  // Scratch of the linear solves.
+  std::array<T, kSize * Step::kMaxCoupled * kSize * Step::kMaxCoupled> matrix_;
+  std::array<T, kSize * Step::kMaxCoupled * kSize> rhs_;
+
+  // Of the stages side by side: entry k of all in row k.
+  static constexpr int kRowSize = Step::kRows ? kSize * kSize * Step::kLanes : 0;
+  alignas(64) std::array<T, kRowSize> rows_;
+  alignas(64) std::array<T, kRowSize> tangents_;
+
+  std::array<Square, Step::kMaxStages> jacobian_;
+  std::array<Square, Step::kMaxStages> increment_;
+  std::array<Square, Step::kMaxStages> last_;
+};
+
+}  // namespace carnot

@@ -1,0 +1,290 @@
+// Newton's method for H_y(t, q, p, y) = 0 at one phase point, on real numbers, m > 0.
+//
+// A system offers kDof (n), kAlgebraic (m) and the template hamiltonian(t, q, p, y), and perhaps
+// cold_start(t, q, p); H_y and H_yy come from Jets in y.
+//
+// Two solutions y at one (q, p) are parted by points where det H_yy = 0. From a warm start Newton's
+// method is to find the solution that belongs to it, so a step is shortened until what is left of
+// it agrees with the (1 - a) of a linear equation: then the iterates follow the path
+// H_y(y(s)) = (1 - s) H_y(y(0)), which crosses no such point, and det H_yy is watched besides.
+// What is left is measured by the step that it asks for, H_yy^-1 H_y, which does not know of the
+// units of the equations (Deuflhard, Newton Methods for Nonlinear Problems, 2004, sec. 3.1: affine
+// invariance, restricted monotonicity).
+#pragma once
+
+#include <cmath>
+#include <concepts>
+#include <limits>
+
+#include "carnot/numerics/gradient.h"
+#include "carnot/numerics/scaled_lu.h"
+#include "carnot/system/index_one_system.h"
+
+namespace carnot {
+
+// A good first guess of y; without it, or where it fails, starts of Newton's own are tried.
+template <class S>
+concept HasColdStart = requires(const S& system, const Vector<double, S::kDof>& q) {
+  { system.cold_start(0.0, q, q) } -> std::convertible_to<Vector<double, S::kAlgebraic>>;
+};
+
+// H_y = 0 as equations for y at one (t, q, p). T is a real type, m > 0.
+template <class System_, class T>
+struct StationaryEquations {
+  using System = System_;
+  static constexpr int n = System::kDof;
+  static constexpr int m = System::kAlgebraic;
+
+  const System& system;
+  T t;
+  Vector<T, n> q;
+  Vector<T, n> p;
+
+  // H_y on any scalar: one gradient.
+  template <class U>
+  static Vector<U, m> derivative(const System& system,
+                                 const U& t,
+                                 const Vector<U, n>& q,
+                                 const Vector<U, n>& p,
+                                 const Vector<U, m>& y) {
+    using J = Jet<U, m>;
+    return system.hamiltonian(J(t), unseeded<J>(q), unseeded<J>(p), seeded(y)).v;
+  }
+
+  [[nodiscard]] Vector<T, m> residual(const Vector<T, m>& y) const {
+    return derivative(system, t, q, p, y);
+  }
+
+  // H_y and H_yy.
+  void linearize(const Vector<T, m>& y, Vector<T, m>& residual, Matrix<T, m, m>& hessian) const {
+    using J = Jet<T, m>;
+    const Vector<J, m> rows =
+        derivative<J>(system, J(t), unseeded<J>(q), unseeded<J>(p), seeded(y));
+    for (int i = 0; i < m; ++i) {
+      residual[i] = rows[i].a;
+      for (int j = 0; j < m; ++j) hessian(i, j) = rows[i].v[j];
+    }
+  }
+
+  // How much H_y(y) moves when the last bits of q, p and y do: what its own rounding may be.
+  [[nodiscard]] Vector<T, m> noise(const Vector<T, m>& y) const {
+    const Vector<T, m> here = residual(y);
+    Vector<T, m> sum = Vector<T, m>::Constant(T(0));
+    for (const int few : {-7, -3, 4, 9}) {
+      const T bits = T(1) + T(few) * epsilon<T>();
+      StationaryEquations near = *this;
+      for (int i = 0; i < n; ++i) {
+        near.q[i] = bits * q[i];
+        sum += (near.residual(y) - here).cwiseAbs();
+        near.q[i] = q[i];
+        near.p[i] = bits * p[i];
+        sum += (near.residual(y) - here).cwiseAbs();
+        near.p[i] = p[i];
+      }
+      Vector<T, m> moved = y;
+      for (int i = 0; i < m; ++i) {
+        moved[i] = bits * y[i];
+        sum += (residual(moved) - here).cwiseAbs();
+        moved[i] = y[i];
+      }
+    }
+    return sum;
+  }
+};
+
+// Damped Newton iteration; at most kMaxIterations linear systems. With `keep_branch` a step may not
+// change det H_yy by more than a factor either, let alone its sign.
+template <class System, class T>
+class StationaryNewton {
+ public:
+  static constexpr int m = System::kAlgebraic;
+  static constexpr int kMaxIterations = 100;
+  static constexpr int kMaxHalvings = 30;
+
+  explicit StationaryNewton(const StationaryEquations<System, T>& equations)
+      : equations_(equations) {}
+
+  // From y; on failure y is unchanged.
+  [[nodiscard]] RateStatus solve(bool keep_branch, Vector<T, m>& y) {
+    x_ = y;
+    step_.setConstant(std::numeric_limits<T>::max());
+    singular_solution_ = false;
+    equations_.linearize(x_, residual_, hessian_);
+    if (!(residual_.allFinite() && hessian_.allFinite())) return RateStatus::kNotFinite;
+    ScaledLu<T, m> factor(hessian_);
+    const T first_determinant = factor.determinant();
+    Progress progress = Progress::kMoved;
+    for (int i = 0; i < kMaxIterations && progress == Progress::kMoved; ++i) {
+      if (!factor.regular()) {
+        singular_solution_ = at_noise();
+        return RateStatus::kNotIndexOne;
+      }
+      step_ = -factor.solve(residual_);
+      progress = settled() ? Progress::kSettled : advance(keep_branch, factor);
+    }
+    if (progress != Progress::kSettled) {
+      if (!at_noise()) return RateStatus::kNoSolution;
+      step_.setConstant(T(0));
+    }
+    if (singular_root(factor, first_determinant)) {
+      singular_solution_ = true;
+      return RateStatus::kNotIndexOne;
+    }
+    y = x_ + step_;
+    return RateStatus::kOk;
+  }
+
+  // The last failure was that of a solution with a singular H_yy, not that of an iterate.
+  [[nodiscard]] bool singular_solution() const { return singular_solution_; }
+
+ private:
+  enum class Progress { kMoved, kSettled, kStalled };
+
+  // True when residual_ and step_ at x_ are round-off: the step may be added, but no more is known.
+  [[nodiscard]] bool settled() const {
+    using std::abs;
+    const T few = T(8) * epsilon<T>();
+    if (step_.cwiseAbs().maxCoeff() <= few * x_.cwiseAbs().maxCoeff()) return true;
+    for (int i = 0; i < m; ++i) {
+      T size(0);
+      for (int j = 0; j < m; ++j) size += abs(hessian_(i, j) * x_[j]);
+      if (!(abs(residual_[i]) <= few * size)) return false;
+    }
+    return true;
+  }
+
+  // x_ <- x_ + a step_ with the first a = 1, 1/2, ... that passes the tests. When settled, step_ is
+  // what is left by the old factor, else residual_, hessian_ and the factor are those of the new
+  // x_.
+  [[nodiscard]] Progress advance(bool keep_branch, ScaledLu<T, m>& factor) {
+    const Vector<T, m> start = x_;
+    const Vector<T, m> step = step_;
+    const T length = step.norm();
+    const Vector<T, m> residual = residual_;
+    const Matrix<T, m, m> hessian = hessian_;
+    T a(1);
+    for (int halving = 0; halving < kMaxHalvings; ++halving, a *= T(0.5)) {
+      x_ = start + a * step;
+      residual_ = equations_.residual(x_);
+      step_ = -factor.solve(residual_);
+      const Vector<T, m> expected = (T(1) - a) * step;
+      const T deviation = (step_ - expected).norm();
+      if (!(deviation <= T(0.5) * a * length)) continue;  // also where it is not a number
+      if (settled()) return Progress::kSettled;
+      equations_.linearize(x_, residual_, hessian_);
+      const ScaledLu<T, m> next(hessian_);
+      const T ratio = next.determinant() / factor.determinant();
+      if (hessian_.allFinite() && (!keep_branch || (ratio > T(0.25) && ratio < T(4)))) {
+        factor = next;
+        return Progress::kMoved;
+      }
+      hessian_ = hessian;
+    }
+    x_ = start;
+    step_ = step;
+    residual_ = residual;
+    return Progress::kStalled;
+  }
+
+  // Where no step helps, or none ends: x_ may still be as good as the rounding of H_y allows.
+  [[nodiscard]] bool at_noise() const {
+    using std::cbrt;
+    const T third = cbrt(epsilon<T>());
+    if (step_.cwiseAbs().maxCoeff() <= third * third * x_.cwiseAbs().maxCoeff()) return true;
+    const Vector<T, m> noise = equations_.noise(x_);
+    return (residual_.cwiseAbs().array() <= noise.array()).all();
+  }
+
+  // The iterates ran into a point where det H_yy is small against where they began: is it zero
+  // within the rounding of the solution?
+  [[nodiscard]] bool singular_root(const ScaledLu<T, m>& factor, const T& first_determinant) const {
+    using std::abs, std::cbrt;
+    if (abs(factor.determinant()) > cbrt(epsilon<T>()) * abs(first_determinant)) return false;
+    const Vector<T, m> radius = factor.solve(equations_.noise(x_));
+    Vector<T, m> residual;
+    Matrix<T, m, m> hessian;
+    for (const int sign : {-1, 1}) {
+      equations_.linearize(x_ + T(sign) * radius, residual, hessian);
+      const T ratio = ScaledLu<T, m>(hessian).determinant() / factor.determinant();
+      if (!(ratio > T(0.5) && ratio < T(2))) return true;
+    }
+    return false;
+  }
+
+  const StationaryEquations<System, T>& equations_;
+  Vector<T, m> x_;
+  Vector<T, m> residual_;
+  Vector<T, m> step_;
+  Matrix<T, m, m> hessian_;
+  bool singular_solution_ = false;
+};
+
+// Newton's method from starts of its own: the scene's, y = 0, and others of the size of the least
+// squares step from 0. Which branch is found where there are several is not said: use a warm start.
+template <class System, class T>
+[[nodiscard]] RateStatus stationary_cold_start(const StationaryEquations<System, T>& equations,
+                                               Vector<T, System::kAlgebraic>& y) {
+  constexpr int m = System::kAlgebraic;
+  StationaryNewton<System, T> newton(equations);
+  RateStatus result = RateStatus::kNotFinite;
+  // True when there is no need to go on. "No solution" says more than "singular at the start".
+  const auto settled = [&](const Vector<T, m>& start) {
+    Vector<T, m> x = start;
+    const RateStatus status = newton.solve(false, x);
+    if (status == RateStatus::kOk) y = x;
+    const bool settles = status == RateStatus::kOk || newton.singular_solution();
+    if (settles || (status != RateStatus::kNotFinite && result != RateStatus::kNoSolution)) {
+      result = status;
+    }
+    return settles;
+  };
+  if constexpr (HasColdStart<System>) {
+    if (settled(equations.system.cold_start(equations.t, equations.q, equations.p))) {
+      return result;
+    }
+  }
+  const Vector<T, m> zero = Vector<T, m>::Constant(T(0));
+  if (settled(zero)) return result;
+
+  // Where H_yy is singular at 0, its least squares step: (A A + d I) x = -A r, d small.
+  Vector<T, m> residual;
+  Matrix<T, m, m> a;
+  equations.linearize(zero, residual, a);
+  const T size = a.cwiseAbs().maxCoeff();
+  if (!residual.allFinite() || !a.allFinite() || !(size > T(0))) return result;
+  Matrix<T, m, m> normal = product(a, a);
+  for (int i = 0; i < m; ++i) normal(i, i) += std::numeric_limits<float>::epsilon() * size * size;
+  const Vector<T, m> right = product(a, residual);
+  const Vector<T, m> start = -ScaledLu<T, m>(normal).solve(right);
+  const T radius = start.cwiseAbs().maxCoeff();
+  if (!start.allFinite() || !(radius > T(0))) return result;
+  if (settled(start)) return result;
+
+  constexpr int kMore = 8;
+  for (int k = 1; k <= kMore; ++k) {
+    Vector<T, m> x = start;
+    for (int i = 0; i < m; ++i) {
+      // Multiples of the golden section modulo 1: spread evenly, and the same in every run.
+      constexpr double kGolden = 0.6180339887498949;
+      const double turn = kGolden * static_cast<double>(k * m + i);
+      x[i] += radius * T(2 * (turn - std::floor(turn)) - 1);
+    }
+    if (settled(x)) return result;
+  }
+  return result;
+}
+
+// Solves H_y = 0 on real numbers: warm from y, or cold where y is all zero. On failure y is
+// unchanged.
+template <class System, class T>
+[[nodiscard]] RateStatus stationary_solve(const System& system,
+                                          const T& t,
+                                          const Vector<T, System::kDof>& q,
+                                          const Vector<T, System::kDof>& p,
+                                          Vector<T, System::kAlgebraic>& y) {
+  const StationaryEquations<System, T> equations{system, t, q, p};
+  if ((y.array() == T(0)).all()) return stationary_cold_start(equations, y);
+  return StationaryNewton<System, T>(equations).solve(true, y);
+}
+
+}  // namespace carnot

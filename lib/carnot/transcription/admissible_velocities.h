@@ -1,0 +1,119 @@
+// A control problem q' = F(q) u of cost u'R u/2 seen as one with velocity constraints, for the
+// midpoint transcription, which knows paths and not controls.
+//
+// With W = (F'F)^-1 F' the velocity v = F u has the controls u = W v and costs v'(W'R W)v/2, and v
+// is admissible where C v = 0, C = I - F W. C is a projector: of its n rows only n - c are
+// independent, so lambda is determined up to the range of P = F W. The term lambda'P lambda/2 of
+// the discrete Lagrangian (midpoint_transcription.h) picks P lambda = 0 and changes nothing else.
+// Where F loses rank, F'F + epsilon trace(F'F) I stands for F'F = N.
+//
+// The slopes need no n x n products: with b = F'lambda, w = N^-1 F'v and w_l = N^-1 b,
+//
+//   l = w'R w/2 + b.w - b.w_l/2 - lambda.v,
+//   l_v = F (N^-1 R w + w_l) - lambda,      C v + P lambda = v - F (w - w_l).
+#pragma once
+
+#include "carnot/numerics/cholesky.h"
+#include "carnot/numerics/gradient.h"
+#include "carnot/numerics/linear_algebra.h"
+#include "carnot/numerics/scalar.h"
+#include "carnot/scene/optimal_control_scene.h"
+#include "carnot/transcription/midpoint_transcription.h"
+
+namespace carnot {
+
+template <HasLinearControls Scene>
+struct AdmissibleVelocities {
+  static constexpr int kDof = Scene::kDof;
+  static constexpr int kMultipliers = kDof;
+  static constexpr int kControls = Scene::kControls;
+
+  Scene scene;
+
+  // W'R W.
+  template <class T>
+  [[nodiscard]] Matrix<T, kDof, kDof> mass(const Vector<T, kDof>& q) const {
+    const Matrix<T, kControls, kDof> w = controls(Matrix<T, kDof, kControls>(scene.frame(q)));
+    if constexpr (HasControlWeight<Scene>) {
+      const Matrix<T, kControls, kDof> rw = product(scene.control_weight(q), w);
+      return product(w.transpose(), rw);
+    } else {
+      return product(w.transpose(), w);
+    }
+  }
+
+  // C.
+  template <class T>
+  [[nodiscard]] Matrix<T, kDof, kDof> constraints(const Vector<T, kDof>& q) const {
+    Matrix<T, kDof, kDof> c = -gauge(q);
+    for (int i = 0; i < kDof; ++i) c(i, i) += constant<T>(1);
+    return c;
+  }
+
+  // P.
+  template <class T>
+  [[nodiscard]] Matrix<T, kDof, kDof> gauge(const Vector<T, kDof>& q) const {
+    const Matrix<T, kDof, kControls> f = scene.frame(q);
+    return product(f, controls(f));
+  }
+
+  // Of the discrete Lagrangian; see midpoint_transcription.h.
+  template <class T>
+  [[nodiscard]] LagrangianSlopes<T, kDof, kDof> slopes(const Vector<T, kDof>& q,
+                                                       const Vector<double, kDof>& v,
+                                                       const Vector<double, kDof>& lambda) const {
+    using J = Jet<T, kDof>;
+    using Controls = Vector<J, kControls>;
+    const auto x = seeded(q);
+    const Matrix<J, kDof, kControls> f = scene.frame(x);
+    const Cholesky<J, kControls> square(regular_square(f));
+    const Controls b = transposed_times(f, lambda);
+    const Controls w = square.solve(transposed_times(f, v));
+    const Controls w_l = square.solve(b);
+    Controls rw = w;
+    if constexpr (HasControlWeight<Scene>) rw = product(scene.control_weight(x), w);
+    const J l = constant<J>(0.5) * (dot(w, rw) - dot(b, w_l)) + dot(b, w);
+    const Controls by_velocity = square.solve(rw) + w_l;
+    const Matrix<T, kDof, kControls> frame = primal(f);
+    return {l.v,
+            product(frame, primal(by_velocity)) - unseeded<T>(lambda),
+            unseeded<T>(v) - product(frame, primal(Controls(w - w_l)))};
+  }
+
+ private:
+  // F'x.
+  template <class J>
+  static Vector<J, kControls> transposed_times(const Matrix<J, kDof, kControls>& f,
+                                               const Vector<double, kDof>& x) {
+    Vector<J, kControls> sum = Vector<J, kControls>::Constant(constant<J>(0));
+    for (int i = 0; i < kDof; ++i) {
+      for (int j = 0; j < kControls; ++j) sum[j] += f(i, j) * constant<typename J::Scalar>(x[i]);
+    }
+    return sum;
+  }
+
+  // F'F, made regular.
+  template <class T>
+  static Matrix<T, kControls, kControls> regular_square(const Matrix<T, kDof, kControls>& f) {
+    constexpr double kRegular = 1e-14;
+    Matrix<T, kControls, kControls> square = product(f.transpose(), f);
+    T trace = square(0, 0);
+    for (int i = 1; i < kControls; ++i) trace += square(i, i);
+    for (int i = 0; i < kControls; ++i) square(i, i) += constant<T>(kRegular) * trace;
+    return square;
+  }
+
+  // W.
+  template <class T>
+  [[nodiscard]] Matrix<T, kControls, kDof> controls(const Matrix<T, kDof, kControls>& f) const {
+    const Cholesky<T, kControls> factor(regular_square(f));
+    Matrix<T, kControls, kDof> w;
+    for (int j = 0; j < kDof; ++j) {
+      const Vector<T, kControls> row = f.row(j).transpose();
+      w.col(j) = factor.solve(row);
+    }
+    return w;
+  }
+};
+
+}  // namespace carnot

@@ -1,0 +1,153 @@
+#include "carnot/shooting/extremal/classification.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "carnot/shooting/extremal/conjugate_times.h"
+#include "carnot/shooting/path/path.h"
+#include "carnot/shooting/shoot/end_point.h"
+#include "carnot/shooting/shoot/survey.h"
+
+namespace carnot {
+namespace {
+
+// How well the phases at T are known: p0 is as good as the end point error relative to the
+// distance.
+double doubt_of(const BoundaryValueProblem& problem, const Geodesic& geodesic) {
+  constexpr double kLeast = 1e-8;
+  constexpr double kMargin = 100;
+  if (geodesic.verification == Verification::kKnots) return kLeast;
+  const double distance = largest_difference(
+      problem.from.data(), problem.to.data(), static_cast<int>(problem.from.size()));
+  return distance > 0 ? std::max(kLeast, kMargin * geodesic.endpoint_error / distance) : kLeast;
+}
+
+// The largest |value(q)| along the path: of samples, and of the parabola through the best three.
+void add_extremes(const BoundaryValueProblem& problem,
+                  const Knots& knots,
+                  long steps,
+                  Geodesic& geodesic) {
+  if (problem.dynamics.info.extremes.empty()) return;
+  const Trajectory fine = survey(problem, knots, steps, 2 * steps + 1).trajectory;
+  for (const Extreme& extreme : problem.dynamics.info.extremes) {
+    std::vector<double> size;
+    for (const auto& q : fine.q) size.push_back(std::abs(extreme.value(q.data())));
+    const auto top = std::max_element(size.begin(), size.end());
+    double largest = *top;
+    if (top != size.begin() && top + 1 != size.end()) {
+      const double bend = top[-1] - 2 * top[0] + top[1];
+      const double slope = 0.5 * (top[1] - top[-1]);
+      if (bend < 0) largest -= 0.5 * slope * slope / bend;
+    }
+    geodesic.extremes.emplace_back(extreme.name, largest);
+  }
+}
+
+// Whether T is conjugate because the extremal is one of a continuum: a step along each direction
+// that does not move the end leads, corrected, to another extremal. Where it is an isolated fold
+// the correction leads back. Nothing where only some directions do.
+std::optional<int> family_dimension(const BoundaryValueProblem& problem,
+                                    const Geodesic& geodesic,
+                                    int conjugate,
+                                    int corank) {
+  constexpr double kStep = 1e-3;  // relative to p0
+  constexpr double kTolerance = 1e-10;
+  const long steps = geodesic.plan.count / 2;
+  std::vector<double> z;
+  const auto tangent = end_point_tangent(problem, geodesic.p0, problem.time, steps, z);
+  if (!tangent) return std::nullopt;
+  const Units units(problem, geodesic.p0.data());
+  const Eigen::MatrixXd kernel = kernel_of(units, *tangent, 1e-8);
+  if (kernel.cols() != conjugate + corank) return std::nullopt;
+  const auto n = static_cast<Eigen::Index>(geodesic.p0.size());
+  const Eigen::Map<const Eigen::VectorXd> p(geodesic.p0.data(), n);
+  const double distance = largest_difference(
+      problem.from.data(), problem.to.data(), static_cast<int>(problem.from.size()));
+  const double part = kTolerance * std::min(1.0, distance);
+  int moved = 0;
+  for (Eigen::Index j = 0; j < kernel.cols(); ++j) {
+    const double step = kStep * units.size(p) / units.size(kernel.col(j));
+    const Eigen::VectorXd aside = p + step * kernel.col(j);
+    std::vector<double> trial(aside.data(), aside.data() + n);
+    Eigen::MatrixXd there;
+    const double error = correct(problem, steps, 1e-3 * part, trial, there);
+    const Eigen::Map<const Eigen::VectorXd> reached(trial.data(), n);
+    if (error <= part && units.size(reached - p) > 0.5 * kStep * units.size(p)) ++moved;
+  }
+  if (moved == kernel.cols()) return conjugate;
+  return moved == 0 ? std::optional<int>(0) : std::nullopt;
+}
+
+// Whether the path passes a singularity of the coordinates, as some do that move only one of them.
+// The tangent flow has a pole there, which numbers beyond it do not show.
+bool passes_singularity(const BoundaryValueProblem& problem, const Extremal& extremal) {
+  if (problem.dynamics.calls.chart == nullptr) return false;
+  const long steps = extremal.geodesic.plan.count;
+  const Trajectory path = survey(problem, extremal.knots, steps, steps + 1).trajectory;
+  const auto parted = [&](const std::vector<double>& a, const std::vector<double>& b) {
+    return !same_chart(problem.dynamics, a.data(), b.data());
+  };
+  return std::adjacent_find(path.q.begin(), path.q.end(), parted) != path.q.end();
+}
+
+ConjugateTimes conjugate_times_along(const BoundaryValueProblem& problem,
+                                     const Extremal& extremal,
+                                     ConjugateTimesOptions options) {
+  if (problem.dynamics.forced > 0 || passes_singularity(problem, extremal)) return {};
+  options.doubt = doubt_of(problem, extremal.geodesic);
+  const long steps = extremal.geodesic.plan.count / 2;
+  return conjugate_times(problem, extremal.knots, steps, options);
+}
+
+// Morse index, label, abnormal and family dimension.
+void set_label(const BoundaryValueProblem& problem,
+               const ConjugateTimes& conjugate,
+               Geodesic& geodesic) {
+  if (conjugate.corank) geodesic.abnormal = *conjugate.corank > 0;
+  if (!conjugate.known) return;
+  const auto inner = static_cast<int>(conjugate.times.size()) - conjugate.at_end;
+  geodesic.morse_index = inner;
+  geodesic.family_dimension = 0;
+  if (conjugate.at_end > 0) {
+    geodesic.family_dimension.reset();
+    if (geodesic.verification == Verification::kSingle) {
+      geodesic.family_dimension =
+          family_dimension(problem, geodesic, conjugate.at_end, *conjugate.corank);
+    }
+  }
+  if (geodesic.family_dimension.value_or(0) > 0) {
+    geodesic.label = Label::kSingular;
+  } else if (inner > 0) {
+    // On an abnormal extremal the index depends on the multipliers: a minimum may be conjugate with
+    // some of them (Agrachev & Sachkov, Control Theory from the Geometric Viewpoint, 2004, ch. 20).
+    if (!geodesic.abnormal.value_or(false)) geodesic.label = Label::kConjugatePassed;
+  } else if (conjugate.times.empty()) {
+    geodesic.label = Label::kLocallyMinimal;
+  }
+}
+
+}  // namespace
+
+const ConjugateTimes& conjugate_times_of(const BoundaryValueProblem& problem, Extremal& extremal) {
+  if (!extremal.conjugate) extremal.conjugate = conjugate_times_along(problem, extremal, {});
+  return *extremal.conjugate;
+}
+
+void label(const BoundaryValueProblem& problem, Extremal& extremal) {
+  ConjugateTimesOptions options;
+  options.precision = 1;
+  add_extremes(problem, extremal.knots, extremal.geodesic.plan.count, extremal.geodesic);
+  set_label(problem, conjugate_times_along(problem, extremal, options), extremal.geodesic);
+}
+
+void complete(const BoundaryValueProblem& problem, long samples, Extremal& extremal) {
+  Geodesic& geodesic = extremal.geodesic;
+  const long steps = geodesic.plan.count;
+  add_extremes(problem, extremal.knots, steps, geodesic);
+  if (samples > 0) geodesic.trajectory = survey(problem, extremal.knots, steps, samples).trajectory;
+  const ConjugateTimes& conjugate = conjugate_times_of(problem, extremal);
+  if (conjugate.known) geodesic.conjugate_times = conjugate.times;
+  set_label(problem, conjugate, geodesic);
+}
+
+}  // namespace carnot

@@ -1,0 +1,19 @@
+// What is said of an extremal that is going to be returned: samples, conjugate times, label.
+#pragma once
+
+#include "carnot/shooting/extremal/verification.h"
+
+namespace carnot {
+
+// Fills trajectory (`samples` times), extremes, conjugate times, Morse index, label, abnormal and
+// family dimension, as far as they can be known.
+void complete(const BoundaryValueProblem& problem, long samples, Extremal& extremal);
+
+// The same without samples and times: these are counted only, which is faster where there are many.
+void label(const BoundaryValueProblem& problem, Extremal& extremal);
+
+// The conjugate times of the extremal, computed once. Unknown with holonomic constraints that need
+// forces, where momenta along the rows of Dh move nothing.
+const ConjugateTimes& conjugate_times_of(const BoundaryValueProblem& problem, Extremal& extremal);
+
+}  // namespace carnot

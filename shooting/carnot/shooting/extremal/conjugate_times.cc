@@ -1,0 +1,273 @@
+#include "carnot/shooting/extremal/conjugate_times.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "carnot/shooting/linear/lagrangian_plane.h"
+#include "carnot/shooting/problem/units.h"
+
+namespace carnot {
+namespace {
+
+using Eigen::MatrixXd;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+// A phase point and the plane over it, in the units of a short extremal and balanced coordinates
+// (S^-1 X; S'P).
+struct Frame {
+  double t = 0;
+  std::vector<double> z;
+  MatrixXd plane;
+  double phi = 0;  // continuous argument of det W
+  Phases phases;
+};
+
+class Planes {
+ public:
+  Planes(
+      const Dynamics& dynamics, const Units& units, const MatrixXd& s, int corank, double precision)
+      : dynamics_(dynamics),
+        units_(units),
+        s_(s),
+        inverse_(s.inverse()),
+        corank_(corank),
+        precision_(precision),
+        doubt_(kRoundOff * s_.norm() * inverse_.norm()) {}
+
+  // The frame at time t, in as many steps of the method as det W needs to be followed. False when
+  // a step fails or W turns too fast.
+  [[nodiscard]] bool advance(const Frame& from, double t, Frame& to, int halvings = 30) const {
+    if (!step(from, t, to)) return false;
+    if (std::abs(to.phi - from.phi) < kLargestTurn) return true;
+    Frame middle;
+    return halvings > 0 && advance(from, 0.5 * (from.t + t), middle, halvings - 1) &&
+           advance(middle, t, to, halvings - 1);
+  }
+
+  // N at a frame, as a real number that is near an integer; phases nearer to zero than `tolerance`
+  // have not passed it.
+  [[nodiscard]] double count(const Frame& frame, double tolerance = 0) const {
+    double sum = 0;
+    for (Eigen::Index j = corank_; j < frame.phases.angles.size(); ++j) {
+      const double theta = frame.phases.angles[j];
+      sum += theta < tolerance ? theta + kTurn : theta;
+    }
+    return (frame.phi - sum) / kTurn;
+  }
+  // How many phases, but for those of the corank, are nearer to zero than `tolerance`.
+  [[nodiscard]] int near_zero(const Frame& frame, double tolerance) const {
+    int number = 0;
+    for (Eigen::Index j = corank_; j < frame.phases.angles.size(); ++j) {
+      if (std::abs(frame.phases.angles[j]) < tolerance) ++number;
+    }
+    return number;
+  }
+  // A phase so near to zero that round-off may have put it on the wrong side.
+  [[nodiscard]] bool ambiguous(const Frame& frame) const { return near_zero(frame, doubt_) > 0; }
+  [[nodiscard]] double doubt() const { return doubt_; }
+
+  // The time in (a.t, t] at which the count first exceeds `target`, by bisection.
+  [[nodiscard]] double locate(const Frame& a, double t, double target) const {
+    double low = a.t;
+    double high = t;
+    Frame middle;
+    constexpr int kBisections = 60;
+    for (int i = 0; i < kBisections && high - low > precision_ * high; ++i) {
+      const double centre = 0.5 * (low + high);
+      if (!advance(a, centre, middle)) break;
+      (count(middle) > target + 0.5 ? high : low) = centre;
+    }
+    return 0.5 * (low + high);
+  }
+
+ private:
+  [[nodiscard]] bool step(const Frame& from, double t, Frame& to) const {
+    const int n = dynamics_.dof;
+    RowMajor m(2 * n, 2 * n);
+    to.t = t;
+    to.z = from.z;
+    const StepPlan plan = StepPlan::equal(from.t, t - from.t, 1);
+    if (!dynamics_.tangent_flow(plan, to.z.data(), m.data()).completed()) return false;
+    MatrixXd carried = from.plane;
+    carried.topRows(n) = s_ * carried.topRows(n);
+    carried.bottomRows(n) = inverse_ * carried.bottomRows(n);
+    carried = units_.map(m) * carried;
+    carried.topRows(n) = inverse_ * carried.topRows(n);
+    carried.bottomRows(n) = s_ * carried.bottomRows(n);
+    to.plane = orthonormal(carried);
+    to.phases = phases_of(to.plane);
+    // det W = (det U)^2.
+    to.phi = from.phi + std::remainder(2 * (to.phases.turn - from.phases.turn), kTurn);
+    return true;
+  }
+
+  static constexpr double kLargestTurn = 0.8;  // of det W in one step; 2 pi more would go unseen
+  static constexpr double kRoundOff = 1e-14;   // of a plane, before S magnifies it
+
+  const Dynamics& dynamics_;
+  const Units& units_;
+  MatrixXd s_;
+  MatrixXd inverse_;
+  int corank_;
+  double precision_;
+  double doubt_;
+};
+
+Frame vertical(const Knots& knots) {
+  const int n = knots.dof;
+  Frame frame{0, {knots.at(0), knots.at(0) + 2 * n}, MatrixXd::Zero(2 * n, n), 0, {}};
+  frame.plane.bottomRows(n).setIdentity();
+  frame.phases = phases_of(frame.plane);
+  return frame;
+}
+
+// A typical graph from `begin` T to `end` T: the middle one by regularity, of those with the
+// smallest kernel. Near a time where X or P is singular the balance would make a phase turn too
+// fast to be seen.
+std::optional<Graph> typical_graph(double begin,
+                                   double end,
+                                   const BoundaryValueProblem& problem,
+                                   const Units& units,
+                                   const Knots& knots,
+                                   long steps) {
+  const int n = problem.dynamics.dof;
+  const int last = std::max(1, static_cast<int>(end * knots.segments));
+  const double piece = (knots.segments == 1 ? end : 1.0 / knots.segments) * problem.time;
+  const double first = begin * problem.time;
+  const long count = std::max(2L, std::lround(steps * piece / problem.time));
+  const double h = piece / static_cast<double>(count);
+  MatrixXd plane = vertical(knots).plane;
+  std::vector<Graph> graphs;
+  for (int i = 0; i < last; ++i) {
+    std::vector<double> z(knots.at(i), knots.at(i) + 2 * n);
+    for (long j = 0; j < count; ++j) {
+      const double t = i * piece + static_cast<double>(j) * h;
+      RowMajor m(2 * n, 2 * n);
+      const StepPlan plan = StepPlan::equal(t, h, 1);
+      if (!problem.dynamics.tangent_flow(plan, z.data(), m.data()).completed()) return std::nullopt;
+      plane = orthonormal(units.map(m) * plane);
+      if (t + h < first) continue;
+      Graph next = graph_of(plane);
+      if (next.balance.allFinite()) graphs.push_back(std::move(next));
+    }
+  }
+  if (graphs.empty()) return std::nullopt;
+  // A conjugate time by chance shows a kernel only there.
+  std::sort(graphs.begin(), graphs.end(), [](const Graph& one, const Graph& other) {
+    return std::pair(one.kernel, one.regularity) < std::pair(other.kernel, other.regularity);
+  });
+  const auto typical = std::count_if(graphs.begin(), graphs.end(), [&](const Graph& graph) {
+    return graph.kernel == graphs.front().kernel;
+  });
+  return graphs[typical / 2];
+}
+
+// Before T/2, where symmetric extremals have nothing special; but a path may leave an abnormal one
+// later than that, such as exponentially.
+std::optional<Graph> balance_of(double fraction,
+                                const BoundaryValueProblem& problem,
+                                const Units& units,
+                                const Knots& knots,
+                                long steps) {
+  constexpr double kLate = 0.9;
+  auto graph = typical_graph(0.5 * fraction, fraction, problem, units, knots, steps);
+  if (!graph || graph->kernel == 0) return graph;
+  auto late = typical_graph(kLate, 1, problem, units, knots, steps);
+  return late && late->kernel < graph->kernel ? late : graph;
+}
+
+// Whether a kernel that shows itself along the path can be told from small numbers. On a path of
+// extent d directions that take s brackets move by d^(2s - 2) only; five brackets and d = 0.05 are
+// still above round-off.
+bool tells_kernels(const Knots& knots) {
+  constexpr double kLeastExtent = 0.05;
+  double extent = 0;
+  for (int i = 1; i <= knots.segments; ++i) {
+    for (int k = 0; k < knots.dof; ++k) {
+      extent = std::max(extent, std::abs(knots.at(i)[k] - knots.at(0)[k]));
+    }
+  }
+  return extent >= kLeastExtent;
+}
+
+// One pass at a given number of steps, balanced by what is before `fraction` T.
+ConjugateTimes follow(double fraction,
+                      const BoundaryValueProblem& problem,
+                      const Units& units,
+                      const Knots& knots,
+                      long steps,
+                      const ConjugateTimesOptions& options) {
+  const int n = problem.dynamics.dof;
+  ConjugateTimes result;
+  const std::optional<Graph> graph = balance_of(fraction, problem, units, knots, steps);
+  if (!graph || (graph->kernel > 0 && !units.scaled() && !tells_kernels(knots))) return result;
+  result.corank = graph->kernel;
+  if (graph->kernel == n) return result;
+  const Planes planes(problem.dynamics, units, graph->balance, graph->kernel, options.precision);
+  Frame frame = vertical(knots);
+  Frame clear = frame;  // the last frame whose count is beyond doubt
+  int counted = 0;
+  const auto count_to = [&](int count, const Frame& until) {
+    for (; counted < count; ++counted) {
+      result.times.push_back(planes.locate(clear, until.t, counted));
+    }
+    return count == counted;
+  };
+  const long per_segment = std::max(1L, (steps + knots.segments - 1) / knots.segments);
+  for (long i = 1; i <= per_segment * knots.segments; ++i) {
+    const double t =
+        problem.time * static_cast<double>(i) / static_cast<double>(per_segment * knots.segments);
+    Frame next;
+    if (!planes.advance(frame, t, next)) return result;
+    if (i % per_segment == 0) {
+      const double* knot = knots.at(static_cast<int>(i / per_segment));
+      next.z.assign(knot, knot + 2 * n);
+    }
+    frame = next;
+    if (i == per_segment * knots.segments || planes.ambiguous(frame)) continue;
+    if (!count_to(static_cast<int>(std::lround(planes.count(frame))), frame)) return result;
+    clear = frame;
+  }
+  if (planes.doubt() > options.doubt) return result;
+  result.at_end = planes.near_zero(frame, options.doubt);
+  const double tolerance = result.at_end > 0 ? options.doubt : 0;
+  if (!count_to(static_cast<int>(std::lround(planes.count(frame, tolerance))), frame))
+    return result;
+  result.times.insert(result.times.end(), result.at_end, problem.time);
+  result.known = true;
+  return result;
+}
+
+}  // namespace
+
+ConjugateTimes conjugate_times(const BoundaryValueProblem& problem,
+                               const Knots& knots,
+                               long steps,
+                               const ConjugateTimesOptions& options) {
+  // A phase that makes a whole turn within one step goes unseen: two passes, of other steps and
+  // another balance, must agree.
+  constexpr int kDoublings = 4;
+  constexpr std::array kFractions{0.43, 0.31};
+  const Units units(problem, knots.at(0) + knots.dof);
+  ConjugateTimes coarse = follow(kFractions[0], problem, units, knots, steps, options);
+  for (int i = 0; i < kDoublings; ++i) {
+    steps *= 2;
+    ConjugateTimes fine = follow(kFractions[(i + 1) % 2], problem, units, knots, steps, options);
+    if (coarse.known && fine.known && coarse.times.size() == fine.times.size() &&
+        coarse.corank == fine.corank) {
+      return fine;
+    }
+    coarse = std::move(fine);
+  }
+  coarse.known = false;
+  coarse.times.clear();
+  return coarse;
+}
+
+}  // namespace carnot

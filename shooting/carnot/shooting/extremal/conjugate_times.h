@@ -1,0 +1,45 @@
+// Conjugate times of an extremal, with multiplicity.
+//
+// The columns of (X, P) = (dq(t)/dp0, dp(t)/dp0) span a Lagrangian plane that starts at X = 0; t is
+// conjugate when the rank of X drops below its generic one. The phases theta_j of the plane
+// (lagrangian_plane.h) pass through 0 in one direction only, upwards, since H_pp >= 0. So with Phi
+// the continuous argument of det W = exp(i sum_j theta_j) and the theta_j in [0, 2 pi),
+//
+//   N(t) = (Phi(t) - sum_j theta_j(t)) / (2 pi)
+//
+// counts the conjugate times in (0, t), even multiplicities too, where the sign of det X does not.
+// On an abnormal extremal as many phases as its corank stay at 0 and are left out. The plane is
+// carried from step to step by the tangent flow and made orthonormal again each time, so growth of
+// the tangents costs no digits. Source: Arnold, Mathematical Methods of Classical Mechanics,
+// appendix 11 (Maslov index).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "carnot/shooting/boundary_value_problem.h"
+#include "carnot/shooting/shoot/knots.h"
+
+namespace carnot {
+
+struct ConjugateTimes {
+  bool known = false;         // false where round-off hides the count
+  std::vector<double> times;  // in (0, T], ascending, repeated by multiplicity
+  int at_end = 0;             // how many of them are T
+  std::optional<int> corank;  // n - the generic rank of X; > 0: abnormal
+};
+
+struct ConjugateTimesOptions {
+  double doubt = 1e-8;  // a phase nearer to zero at T counts as zero: T is conjugate, as well as
+                        // the extremal is known
+  double precision = 1e-13;  // relative, of the times; with 1 they are counted, not located
+};
+
+// Along the extremal through `knots`; `steps` of the method over the whole time. To locate a time
+// costs some forty of them.
+ConjugateTimes conjugate_times(const BoundaryValueProblem& problem,
+                               const Knots& knots,
+                               long steps,
+                               const ConjugateTimesOptions& options = {});
+
+}  // namespace carnot

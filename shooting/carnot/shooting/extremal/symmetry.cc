@@ -1,0 +1,96 @@
+#include "carnot/shooting/extremal/symmetry.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace carnot {
+
+void turn_plane(const Symmetries& of, double angle, double* x) {
+  if (of.x < 0) return;
+  const double u = x[of.x];
+  const double v = x[of.y];
+  x[of.x] = std::cos(angle) * u - std::sin(angle) * v;
+  x[of.y] = std::sin(angle) * u + std::cos(angle) * v;
+}
+
+namespace {
+
+// R D x, the linear part; x is a configuration without its angles' turn, or a momentum.
+std::vector<double> linear(const Symmetries& of, const ProblemSymmetry& s, const double* x) {
+  std::vector<double> y(s.mirror.size());
+  for (std::size_t j = 0; j < y.size(); ++j) y[j] = s.mirror[j] * x[j];
+  turn_plane(of, s.turn, y.data());
+  return y;
+}
+
+// Completes mirror and reversal to a map of `from` to the image of `from`; false when `to` is then
+// not mapped to the image of `to`.
+bool complete_map(const BoundaryValueProblem& problem, ProblemSymmetry& s) {
+  constexpr double kRoundOff = 1e-12;
+  const Symmetries& of = problem.dynamics.info.symmetries;
+  const std::vector<double>& image_from = s.reverses ? problem.to : problem.from;
+  const std::vector<double>& image_to = s.reverses ? problem.from : problem.to;
+  s.shift.assign(problem.from.size(), 0.0);
+  if (!of.angles.empty()) {
+    const int j = of.angles.front();
+    s.turn = image_from[j] - s.mirror[j] * problem.from[j];
+  }
+  for (const int j : of.angles) s.shift[j] = s.turn;
+  const std::vector<double> first = linear(of, s, problem.from.data());
+  if (of.x >= 0) {
+    s.shift[of.x] = image_from[of.x] - first[of.x];
+    s.shift[of.y] = image_from[of.y] - first[of.y];
+  }
+  const std::vector<double> second = linear(of, s, problem.to.data());
+  for (std::size_t j = 0; j < first.size(); ++j) {
+    const double size = 1 + std::abs(image_from[j]) + std::abs(image_to[j]);
+    if (std::abs(first[j] + s.shift[j] - image_from[j]) > kRoundOff * size) return false;
+    if (std::abs(second[j] + s.shift[j] - image_to[j]) > kRoundOff * size) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::vector<ProblemSymmetry> symmetries_of(const BoundaryValueProblem& problem) {
+  std::vector<std::vector<double>> mirrors = problem.dynamics.info.symmetries.mirrors;
+  mirrors.insert(mirrors.begin(), std::vector<double>(problem.from.size(), 1.0));
+  std::vector<ProblemSymmetry> result;
+  for (std::size_t i = 0; i < mirrors.size(); ++i) {
+    for (const bool reverses : {false, true}) {
+      if (i == 0 && !reverses) continue;
+      if (reverses && !problem.dynamics.has_transcription()) continue;  // drift, magnetic fields
+      ProblemSymmetry symmetry{mirrors[i], 0, {}, reverses};
+      if (complete_map(problem, symmetry)) result.push_back(symmetry);
+    }
+  }
+  return result;
+}
+
+Knots partner(const SceneInfo& info, const ProblemSymmetry& symmetry, const Knots& knots) {
+  const int n = knots.dof;
+  Knots image{knots.segments, n, std::vector<double>(knots.z.size())};
+  const double sign = symmetry.reverses ? -1 : 1;
+  for (int i = 0; i <= knots.segments; ++i) {
+    const double* z = knots.at(symmetry.reverses ? knots.segments - i : i);
+    const std::vector<double> q = linear(info.symmetries, symmetry, z);
+    const std::vector<double> p = linear(info.symmetries, symmetry, z + n);
+    for (int j = 0; j < n; ++j) {
+      image.at(i)[j] = q[j] + symmetry.shift[j];
+      image.at(i)[n + j] = sign * p[j];
+    }
+  }
+  return image;
+}
+
+Path partner(const SceneInfo& info, const ProblemSymmetry& symmetry, const Path& path) {
+  Path image{path.intervals, path.dof, std::vector<double>(path.q.size()), {}, {}};
+  for (int i = 0; i <= path.intervals; ++i) {
+    const int source = symmetry.reverses ? path.intervals - i : i;
+    const std::vector<double> q = linear(info.symmetries, symmetry, path.configuration(source));
+    for (int j = 0; j < path.dof; ++j) image.configuration(i)[j] = q[j] + symmetry.shift[j];
+  }
+  return image;
+}
+
+}  // namespace carnot

@@ -1,0 +1,43 @@
+// From joined knots to a verified extremal.
+//
+// Polishing: the number of steps is doubled until the flow no longer changes, then p(0) is
+// corrected by Newton's method on the end point. Checking: p(0) is integrated once more with twice
+// as many steps and must arrive within the tolerance. Where |dq(T)/dp(0)| makes that impossible in
+// double, the extremal is checked segment by segment at its knots instead and says so.
+#pragma once
+
+#include <optional>
+
+#include "carnot/shooting/boundary_value_problem.h"
+#include "carnot/shooting/extremal/conjugate_times.h"
+#include "carnot/shooting/geodesic.h"
+#include "carnot/shooting/reason.h"
+#include "carnot/shooting/shoot/knots.h"
+
+namespace carnot {
+
+// A verified extremal, its knots, and where it is at equidistant times to tell it from others.
+struct Extremal {
+  Geodesic geodesic;
+  Knots knots;
+  std::vector<std::vector<double>> path;
+  bool singular = false;  // dq(T)/dp0 is singular: a member of a family, or abnormal
+  std::optional<ConjugateTimes> conjugate;  // where they have been asked for
+  int image = 0;                            // of the target, see windings.h
+};
+
+// Nothing when neither check succeeds: `reason` says why. `steps` is where the search for a step
+// begins.
+std::optional<Extremal> verify(const BoundaryValueProblem& problem,
+                               Knots knots,
+                               long steps,
+                               double tolerance,
+                               Reason* reason = nullptr);
+
+// The same trajectory: nowhere further apart than 1e-6 of its extent.
+bool same(const Extremal& a, const Extremal& b);
+
+// Both singular and of equal action: one continuous family, of which one member is enough.
+bool same_family(const Extremal& a, const Extremal& b);
+
+}  // namespace carnot

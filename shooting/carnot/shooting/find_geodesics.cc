@@ -1,0 +1,163 @@
+#include "carnot/shooting/find_geodesics.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "carnot/numerics/parallel.h"
+#include "carnot/shooting/extremal/classification.h"
+#include "carnot/shooting/extremal/ranking.h"
+#include "carnot/shooting/problem/problem_line.h"
+#include "carnot/shooting/problem/windings.h"
+#include "carnot/shooting/search/failure.h"
+#include "carnot/shooting/search/search.h"
+#include "carnot/shooting/shoot/multiple_shooting.h"
+
+namespace carnot {
+namespace {
+
+constexpr long kFewSteps = 32;  // of the path that does not move
+
+// Moves the answer back.
+void move_to(const BoundaryValueProblem& problem, Geodesic& geodesic) {
+  for (const int j : movable(problem.dynamics.info)) {
+    for (std::vector<double>& q : geodesic.trajectory.q) q[j] += problem.from[j];
+  }
+}
+
+// from = to: the path that does not move.
+Extremal constant_path(const BoundaryValueProblem& problem) {
+  Extremal extremal;
+  extremal.knots = knots_of(problem, std::vector<double>(problem.dynamics.dof, 0.0), 1, kFewSteps);
+  extremal.geodesic.p0.assign(problem.dynamics.dof, 0.0);
+  extremal.geodesic.lambda0.assign(problem.dynamics.multipliers, 0.0);
+  extremal.geodesic.length = 0;
+  extremal.geodesic.plan = StepPlan::equal(0, problem.time, kFewSteps);
+  return extremal;
+}
+
+// Whether from = to needs no search: with velocity constraints the path that does not move is
+// returned; elsewhere drift or a force may forbid it.
+bool stays(const BoundaryValueProblem& problem) {
+  if (problem.from != problem.to) return false;
+  if (problem.dynamics.has_transcription()) return true;
+  constexpr double kMoved = 1e-12;
+  std::vector<double> z = problem.from;
+  z.resize(2 * problem.from.size(), 0.0);
+  const StepPlan plan = StepPlan::equal(0, problem.time, kFewSteps);
+  const bool completed = problem.dynamics.flow(plan, z.data()).completed();
+  for (std::size_t j = 0; j < problem.from.size(); ++j) {
+    if (!(std::abs(z[j] - problem.from[j]) <= kMoved * (1 + std::abs(z[j])))) return false;
+  }
+  return completed;
+}
+
+// What the searches for all images of the target gave.
+struct Found {
+  std::vector<BoundaryValueProblem> problems;  // one for each image
+  std::vector<Extremal> list;
+  std::vector<int> hits;
+  int starts = 0;
+  int converged = 0;
+  bool finished = true;
+  Failure failure;  // why there is none, of the first image
+};
+
+void search_image(const GeodesicOptions& options, Found& found) {
+  const BoundaryValueProblem& problem = found.problems.back();
+  const int image = static_cast<int>(found.problems.size()) - 1;
+  if (stays(problem)) {
+    found.list.push_back(constant_path(problem));
+    found.list.back().image = image;
+    return;
+  }
+  Search search(problem, options);
+  if (options.guess.empty()) {
+    found.finished = search.run();
+  } else {
+    search.polish_guess();
+  }
+  for (Extremal& extremal : search.extremals()) {
+    found.list.push_back(std::move(extremal));
+    found.list.back().image = image;
+  }
+  const std::vector<int> hits = search.hits();
+  found.hits.insert(found.hits.end(), hits.begin(), hits.end());
+  found.starts += search.starts();
+  found.converged += search.converged();
+  if (found.list.empty() && found.failure.reason == Reason::kNone) {
+    found.failure = explain_failure(problem, search, options);
+  }
+}
+
+}  // namespace
+
+void GeodesicOptions::validate(const BoundaryValueProblem& problem) const {
+  const auto require = [](bool ok, const std::string& what) {
+    if (!ok) throw std::invalid_argument(what);
+  };
+  require(count >= 1, "count is " + std::to_string(count) + ", must be >= 1");
+  require(starts >= 0, "starts is " + std::to_string(starts) + ", must be >= 0");
+  require(threads >= 0, "threads is " + std::to_string(threads) + ", must be >= 0");
+  require(samples >= 0, "samples is " + std::to_string(samples) + ", must be >= 0");
+  require(tolerance > 0 && std::isfinite(tolerance),
+          "tolerance is " + std::to_string(tolerance) + ", must be > 0");
+  require(max_length > 0, "max_length is " + std::to_string(max_length) + ", must be > 0");
+  const std::vector<std::string> known = minimisers();
+  require(std::find(known.begin(), known.end(), minimiser) != known.end(),
+          "minimiser " + minimiser + " is unknown");
+  require(guess.empty() || static_cast<int>(guess.size()) == problem.dynamics.dof,
+          "guess has " + std::to_string(guess.size()) + " components, the scene has " +
+              std::to_string(problem.dynamics.dof));
+}
+
+GeodesicReport find_geodesics(const BoundaryValueProblem& asked, const GeodesicOptions& options) {
+  asked.validate();
+  options.validate(asked);
+  const auto began = std::chrono::steady_clock::now();
+  GeodesicReport report;
+  const BoundaryValueProblem problem = at_origin(asked);
+  std::vector<Image> images{{problem.to, {}}};
+  if (options.mod_angles) images = images_of_target(problem, options.max_length);
+  Found found;
+  found.problems.reserve(images.size());  // extremals refer to them
+  for (const Image& image : images) {
+    found.problems.push_back(problem);
+    found.problems.back().to = image.to;
+    search_image(options, found);
+    const bool stayed = !found.list.empty() && found.list.back().geodesic.action == 0;
+    if (!found.finished || (stayed && !options.all && options.count == 1)) break;
+  }
+  rank(found.list);
+  std::vector<Extremal>& list = found.list;
+  if (!options.all && list.size() > static_cast<std::size_t>(options.count)) {
+    list.resize(options.count);
+  }
+  parallel_for(static_cast<int>(list.size()), thread_count(options.threads), [&](int i) {
+    list[i].geodesic.windings = images[list[i].image].windings;
+    complete(found.problems[list[i].image], options.samples, list[i]);
+    move_to(asked, list[i].geodesic);
+  });
+  for (Extremal& extremal : list) report.geodesics.push_back(std::move(extremal.geodesic));
+  report.starts = found.starts;
+  report.converged_starts = found.converged;
+  report.distinct_hit = static_cast<int>(found.hits.size());
+  report.missed_estimate = missed_estimate(found.hits);
+  report.status = list.empty() ? GeodesicStatus::kNotConverged : GeodesicStatus::kConverged;
+  if (list.empty()) {
+    report.reason = found.failure.reason;
+    report.message = found.failure.message;
+  }
+  if (!found.finished) {
+    report.status = GeodesicStatus::kInterrupted;
+    report.reason = Reason::kInterrupted;
+    report.message = "interrupted";
+  }
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - began;
+  report.elapsed_seconds = elapsed.count();
+  return report;
+}
+
+}  // namespace carnot

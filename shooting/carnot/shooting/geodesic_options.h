@@ -1,0 +1,31 @@
+// What may be asked of a search for geodesics beside its problem.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "carnot/shooting/boundary_value_problem.h"
+
+namespace carnot {
+
+struct GeodesicOptions {
+  int count = 1;     // how many extremals are wanted
+  bool all = false;  // every one found, instead of `count`
+  double max_length = std::numeric_limits<double>::infinity();
+  int starts = 0;                    // paths to relax; 0: the default for what is asked
+  double tolerance = 1e-10;          // largest endpoint error of a verified extremal
+  std::string minimiser = "newton";  // newton, ceres, nlopt, nlopt:NAME (see minimisers())
+  bool mod_angles = false;           // angles need to agree modulo their periods only
+  std::vector<double> guess;         // p0 to start from instead of paths; empty: none
+  std::uint64_t seed = 0;
+  int threads = 0;     // 0: all cores
+  long samples = 201;  // times in each trajectory; 0: none
+  Progress progress;   // fraction done; returns false to stop
+
+  // Throws std::invalid_argument naming the option and what is accepted.
+  void validate(const BoundaryValueProblem& problem) const;
+};
+
+}  // namespace carnot

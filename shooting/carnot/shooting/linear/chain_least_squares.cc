@@ -1,0 +1,186 @@
+#include "carnot/shooting/linear/chain_least_squares.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "carnot/shooting/linear/banded_cholesky.h"
+
+namespace carnot {
+namespace {
+
+// |r|^2 / 2 along a chain, its gradient J'r and J'J.
+class Chain {
+ public:
+  Chain(const ChainResiduals& residuals_of, int residuals, int n, std::size_t nodes)
+      : residuals_of_(residuals_of),
+        n_(n),
+        intervals_(static_cast<int>(nodes) - 1),
+        size_((intervals_ - 1) * n),
+        normal_(size_, 2 * n - 1),
+        gradient_(size_),
+        r_(residuals),
+        jacobian_(r_.size() * 2 * n) {}
+
+  [[nodiscard]] int size() const { return size_; }
+
+  // Infinite where there are no residuals.
+  [[nodiscard]] double cost(const std::vector<double>& x) {
+    double sum = 0;
+    for (int i = 0; i < intervals_; ++i) {
+      if (!residuals_of_(i, &x[i * n_], r_.data(), nullptr)) return kNone;
+      for (const double r : r_) sum += r * r;
+    }
+    return std::isfinite(sum) ? 0.5 * sum : kNone;
+  }
+
+  // The same with derivatives.
+  [[nodiscard]] double linearise(const std::vector<double>& x) {
+    normal_.clear();
+    std::fill(gradient_.begin(), gradient_.end(), 0.0);
+    double sum = 0;
+    for (int i = 0; i < intervals_; ++i) {
+      if (!residuals_of_(i, &x[i * n_], r_.data(), jacobian_.data())) return kNone;
+      for (const double r : r_) sum += r * r;
+      add(i);
+    }
+    return std::isfinite(sum) ? 0.5 * sum : kNone;
+  }
+
+  [[nodiscard]] const BandedCholesky& normal() const { return normal_; }
+  [[nodiscard]] double diagonal(int j) { return normal_(j, j); }
+  [[nodiscard]] const std::vector<double>& gradient() const { return gradient_; }
+
+ private:
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+
+  // What interval i adds to the normal equations.
+  void add(int i) {
+    const int first = i == 0 ? n_ : 0;  // of its 2n arguments that are free
+    const int last = i + 1 == intervals_ ? n_ : 2 * n_;
+    const int shift = (i - 1) * n_;
+    for (std::size_t r = 0; r < r_.size(); ++r) {
+      const double* row = &jacobian_[r * 2 * n_];
+      for (int a = first; a < last; ++a) {
+        gradient_[shift + a] += row[a] * r_[r];
+        double* normal = &normal_(shift + a, shift + a);
+        for (int b = a; b < last; ++b) normal[b - a] += row[a] * row[b];
+      }
+    }
+  }
+
+  const ChainResiduals& residuals_of_;
+  int n_;
+  int intervals_;
+  int size_;
+  BandedCholesky normal_;
+  std::vector<double> gradient_;
+  std::vector<double> r_;
+  std::vector<double> jacobian_;
+};
+
+double norm(const double* x, std::size_t count) {
+  double sum = 0;
+  for (std::size_t j = 0; j < count; ++j) sum += x[j] * x[j];
+  return std::sqrt(sum);
+}
+
+double largest(const std::vector<double>& x) {
+  double most = 0;
+  for (const double value : x) most = std::max(most, std::abs(value));
+  return most;
+}
+
+// How far the linear model is trusted.
+struct TrustRegion {
+  double radius;
+  double shrink = 2;
+
+  // After a step whose true gain was `ratio` of the predicted one.
+  void accept(double ratio) {
+    constexpr double kLargest = 1e16;
+    radius = std::min(kLargest, radius / std::max(1.0 / 3, 1 - std::pow(2 * ratio - 1, 3)));
+    shrink = 2;
+  }
+  void reject() {
+    radius /= shrink;
+    shrink *= 2;
+  }
+};
+
+// Squares of the units of the columns.
+std::vector<double> units2(Chain& chain) {
+  std::vector<double> units(chain.size());
+  for (int j = 0; j < chain.size(); ++j) {
+    const double unit = 1 / (1 + std::sqrt(chain.diagonal(j)));
+    units[j] = unit * unit;
+  }
+  return units;
+}
+
+// (J'J + D) step = -J'r. Returns the gain that the linear model predicts; 0 where it cannot tell.
+double damped_step(Chain& chain,
+                   const std::vector<double>& unit2,
+                   double radius,
+                   std::vector<double>& step) {
+  constexpr double kLeastDiagonal = 1e-6;
+  constexpr double kLargestDiagonal = 1e32;
+  BandedCholesky damped = chain.normal();
+  std::vector<double> damping(step.size());
+  for (int j = 0; j < chain.size(); ++j) {
+    const double scaled = chain.diagonal(j) * unit2[j];
+    damping[j] = std::clamp(scaled, kLeastDiagonal, kLargestDiagonal) / (radius * unit2[j]);
+    damped(j, j) += damping[j];
+    step[j] = -chain.gradient()[j];
+  }
+  if (!damped.factor()) return 0;
+  damped.substitute(step);
+  double gain = 0;
+  for (int j = 0; j < chain.size(); ++j) {
+    gain += 0.5 * step[j] * (damping[j] * step[j] - chain.gradient()[j]);
+  }
+  return std::isfinite(gain) ? gain : 0;
+}
+
+}  // namespace
+
+int minimise_chain(const ChainResiduals& residuals_of,
+                   int residuals,
+                   int n,
+                   const ChainOptions& options,
+                   std::vector<double>& x) {
+  constexpr double kLeastRatio = 1e-3;  // of true to predicted gain
+  Chain chain(residuals_of, residuals, n, x.size() / n);
+  double cost = chain.linearise(x);
+  if (chain.size() == 0 || !std::isfinite(cost)) return 0;
+  const std::vector<double> unit2 = units2(chain);
+  std::vector<double> step(chain.size());
+  std::vector<double> trial = x;
+  TrustRegion region{options.radius};
+  int iterations = 0;
+  bool done = false;
+  while (!done && iterations < options.max_iterations && std::isfinite(cost) &&
+         largest(chain.gradient()) > options.gradient_tolerance) {
+    ++iterations;
+    const double predicted = damped_step(chain, unit2, region.radius, step);
+    if (!(predicted > 0)) {
+      region.reject();
+      continue;
+    }
+    for (int j = 0; j < chain.size(); ++j) trial[n + j] = x[n + j] + step[j];
+    const double gain = cost - chain.cost(trial);
+    const double size = norm(&x[n], step.size()) + options.step_tolerance;
+    done = std::abs(gain) <= options.function_tolerance * cost ||
+           norm(step.data(), step.size()) <= options.step_tolerance * size;
+    if (!(gain > kLeastRatio * predicted)) {
+      region.reject();
+      continue;
+    }
+    region.accept(gain / predicted);
+    x = trial;
+    if (!done) cost = chain.linearise(x);
+  }
+  return iterations;
+}
+
+}  // namespace carnot

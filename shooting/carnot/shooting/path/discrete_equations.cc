@@ -1,0 +1,113 @@
+#include "carnot/shooting/path/discrete_equations.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace carnot {
+
+DiscreteEquations::DiscreteEquations(const Dynamics& dynamics, double h, int intervals)
+    : dynamics_(dynamics),
+      h_(h),
+      n_(dynamics.dof),
+      k_(dynamics.transcribed),
+      intervals_(intervals),
+      m_(2 * n_ + k_),
+      x_(m_),
+      gradient_(m_),
+      hessian_(m_ * m_),
+      middle_(n_),
+      velocity_(n_),
+      terms_(n_ + k_ + 1),
+      by_middle_(terms_.size() * 2 * n_),
+      slopes_(2 * n_ * n_) {}
+
+double DiscreteEquations::evaluate(const Path& path,
+                                   std::vector<double>& residual,
+                                   BandedLu* matrix,
+                                   const Weights& weights) {
+  residual.assign(size(), 0.0);
+  if (matrix != nullptr) matrix->clear();
+  double largest = 0;
+  for (int i = 0; i < intervals_; ++i) {
+    path.gather(i, k_, x_.data());
+    dynamics_.discrete_lagrangian(
+        h_, x_.data(), gradient_.data(), matrix != nullptr ? hessian_.data() : nullptr);
+    if (matrix != nullptr && weights.metric != 0) set_slopes(path, i);
+    for (int a = 0; a < m_; ++a) {
+      if (a < 2 * n_) largest = std::max(largest, std::abs(gradient_[a]));
+      const int row = unknown(i, a);
+      if (row < 0) continue;
+      residual[row] += gradient_[a];
+      for (int b = 0; matrix != nullptr && b < m_; ++b) {
+        const int column = unknown(i, b);
+        if (column < 0) continue;
+        double entry = hessian_[a * m_ + b];
+        if (a < 2 * n_ && b < 2 * n_) {
+          entry *= weights.hessian;
+          if (weights.metric != 0) {
+            double sum = 0;
+            for (int r = 0; r < n_; ++r) sum += slopes_[r * 2 * n_ + a] * slopes_[r * 2 * n_ + b];
+            entry += weights.metric * h_ * sum;
+          }
+        }
+        (*matrix)(row, column) += entry;
+      }
+    }
+  }
+  return largest;
+}
+
+void DiscreteEquations::metric_product(const Path& path,
+                                       const std::vector<double>& x,
+                                       std::vector<double>& product) {
+  product.assign(size(), 0.0);
+  for (int i = 0; i < intervals_; ++i) {
+    set_slopes(path, i);
+    for (int r = 0; r < n_; ++r) {
+      const double* row = &slopes_[r * 2 * n_];
+      double sum = 0;
+      for (int a = 0; a < 2 * n_; ++a) {
+        if (const int at = unknown(i, a); at >= 0) sum += row[a] * x[at];
+      }
+      for (int a = 0; a < 2 * n_; ++a) {
+        if (const int at = unknown(i, a); at >= 0) product[at] += h_ * sum * row[a];
+      }
+    }
+  }
+}
+
+void DiscreteEquations::move(const Path& from,
+                             const std::vector<double>& direction,
+                             double step,
+                             Path& to) const {
+  to.q = from.q;
+  to.lambda = from.lambda;
+  for (int i = 0; i < intervals_; ++i) {
+    const int start = i * (n_ + k_);
+    for (int j = 0; j < k_; ++j) to.lambda[i * k_ + j] -= step * direction[start + j];
+    for (int j = 0; j < n_ && i + 1 < intervals_; ++j) {
+      to.configuration(i + 1)[j] -= step * direction[start + k_ + j];
+    }
+  }
+}
+
+void DiscreteEquations::set_slopes(const Path& path, int i) {
+  for (int j = 0; j < n_; ++j) {
+    middle_[j] = 0.5 * (path.configuration(i)[j] + path.configuration(i + 1)[j]);
+    velocity_[j] = (path.configuration(i + 1)[j] - path.configuration(i)[j]) / h_;
+  }
+  if (!dynamics_.midpoint(middle_.data(), velocity_.data(), terms_.data(), by_middle_.data())) {
+    std::fill(slopes_.begin(), slopes_.end(), std::numeric_limits<double>::quiet_NaN());
+    return;
+  }
+  for (int r = 0; r < n_; ++r) {
+    const double* row = &by_middle_[r * 2 * n_];
+    for (int j = 0; j < n_; ++j) {
+      slopes_[r * 2 * n_ + j] = 0.5 * row[j] - row[n_ + j] / h_;
+      slopes_[r * 2 * n_ + n_ + j] = 0.5 * row[j] + row[n_ + j] / h_;
+    }
+  }
+}
+
+}  // namespace carnot

@@ -1,0 +1,75 @@
+// The equations of a discrete extremal.
+//
+// A path with multipliers is a discrete extremal when, with F_d of midpoint_transcription.h,
+//
+//   D2 F_d(q_{i-1}, q_i, lambda_{i-1}) + D1 F_d(q_i, q_{i+1}, lambda_i) = 0,   D3 F_d = 0,
+//
+// which is the midpoint rule with momenta that match at every node: the gradient of sum F_d, the
+// action less lambda times the constraints. Unknowns and equations are ordered lambda_0, q_1,
+// lambda_1, q_2, ..., lambda_{K-1}, and the matrix, of exact second derivatives, is banded.
+#pragma once
+
+#include <vector>
+
+#include "carnot/dynamics.h"
+#include "carnot/shooting/linear/banded_lu.h"
+#include "carnot/shooting/path/path.h"
+
+namespace carnot {
+
+class DiscreteEquations {
+ public:
+  // `h` is the length of an interval. Keeps a reference to the dynamics.
+  DiscreteEquations(const Dynamics& dynamics, double h, int intervals);
+
+  [[nodiscard]] int size() const { return intervals_ * k_ + (intervals_ - 1) * n_; }
+  [[nodiscard]] BandedLu matrix() const { return {size(), band(), band()}; }
+  // Whether an unknown is a multiplier.
+  [[nodiscard]] bool is_multiplier(int unknown) const { return unknown % (n_ + k_) < k_; }
+
+  // What stands for the second derivatives of sum F_d by the nodes: a combination of themselves and
+  // of B, those of the kinetic energy alone without the curvature of its terms, sum h J'J with
+  // J = dr/dq. B is positive definite where the constraints leave the nodes free.
+  struct Weights {
+    double hessian = 1;
+    double metric = 0;
+  };
+  // Residual at `path`; fills the matrix too where one is given. Returns the largest momentum.
+  double evaluate(const Path& path,
+                  std::vector<double>& residual,
+                  BandedLu* matrix,
+                  const Weights& weights = {1, 0});
+  // B x, with zeros for the multipliers. Not a number where the terms cannot be evaluated.
+  void metric_product(const Path& path, const std::vector<double>& x, std::vector<double>& product);
+  // path - step * direction.
+  void move(const Path& from, const std::vector<double>& direction, double step, Path& to) const;
+
+ private:
+  [[nodiscard]] int band() const { return 2 * n_ + k_ - 1; }
+  // Index of argument `a` of interval i among the unknowns; -1 for a fixed end.
+  [[nodiscard]] int unknown(int i, int a) const {
+    const int start = i * (n_ + k_);
+    if (a >= 2 * n_) return start + a - 2 * n_;
+    if (a >= n_) return i + 1 == intervals_ ? -1 : start + k_ + a - n_;
+    return i == 0 ? -1 : start - n_ + a;
+  }
+  // Sets slopes_, n x 2n: dr of interval i by both nodes.
+  void set_slopes(const Path& path, int i);
+
+  const Dynamics& dynamics_;
+  double h_;
+  int n_;
+  int k_;
+  int intervals_;
+  int m_;
+  std::vector<double> x_;
+  std::vector<double> gradient_;
+  std::vector<double> hessian_;
+  std::vector<double> middle_;
+  std::vector<double> velocity_;
+  std::vector<double> terms_;
+  std::vector<double> by_middle_;
+  std::vector<double> slopes_;
+};
+
+}  // namespace carnot

@@ -1,0 +1,70 @@
+#include "carnot/shooting/path/discrete_newton.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "carnot/shooting/path/discrete_equations.h"
+
+namespace carnot {
+namespace {
+
+double norm(const std::vector<double>& x) {
+  double sum = 0;
+  for (const double value : x) sum += value * value;
+  return std::sqrt(sum);
+}
+
+}  // namespace
+
+DiscreteNewton tighten(const BoundaryValueProblem& problem,
+                       const DiscreteNewtonOptions& options,
+                       Path& path) {
+  constexpr double kShortestStep = 1.0 / 64;
+  // Where no step gains: round-off of coordinates far from zero, magnified near singular frames.
+  constexpr double kRoundedOff = 1e-6;
+  const double h = problem.time / path.intervals;
+  DiscreteEquations equations(problem.dynamics, h, path.intervals);
+  BandedLu matrix = equations.matrix();
+  std::vector<double> residual;
+  std::vector<double> direction;
+  std::vector<double> simplified;
+  Path trial = path;
+  const bool walled = in_one_chart(problem.dynamics, path);
+  DiscreteNewton result;
+  const double scale = equations.evaluate(path, residual, &matrix);
+  result.residual = norm(residual);
+  while (result.iterations < options.max_iterations && std::isfinite(result.residual)) {
+    result.converged = result.residual <= options.tolerance * scale;
+    if (result.converged) break;
+    ++result.iterations;
+    if (!matrix.factor()) break;
+    direction = residual;
+    matrix.substitute(direction);
+    const double length = norm(direction);
+    double step = 1;
+    double reached = 0;
+    for (; step >= kShortestStep; step *= 0.5) {
+      equations.move(path, direction, step, trial);
+      result.left_chart = walled && !in_one_chart(problem.dynamics, trial);
+      if (result.left_chart) continue;
+      equations.evaluate(trial, residual, nullptr);
+      reached = norm(residual);
+      if (reached < (1 - 0.1 * step) * result.residual) break;
+      simplified = residual;
+      matrix.substitute(simplified);
+      if (norm(simplified) < (1 - 0.25 * step) * length) break;
+    }
+    if (step < kShortestStep) {
+      result.converged = !result.left_chart && result.residual <= kRoundedOff * scale;
+      break;
+    }
+    std::swap(path.q, trial.q);
+    std::swap(path.lambda, trial.lambda);
+    equations.evaluate(path, residual, &matrix);
+    result.residual = reached;
+  }
+  fill_momenta(problem.dynamics, h, path);
+  return result;
+}
+
+}  // namespace carnot

@@ -1,0 +1,29 @@
+// Newton's method on the midpoint transcription: from a nearly tight path to a discrete extremal.
+//
+// Solves the equations of discrete_equations.h. Steps are halved while the residual does not fall
+// or the path leaves the one chart that it is in. Minimisers and saddles attract alike.
+#pragma once
+
+#include "carnot/shooting/boundary_value_problem.h"
+#include "carnot/shooting/path/path.h"
+
+namespace carnot {
+
+struct DiscreteNewtonOptions {
+  int max_iterations = 20;
+  double tolerance = 1e-9;  // residual relative to its size at the first iterate's momenta
+};
+
+struct DiscreteNewton {
+  bool converged = false;   // to the tolerance, or as far as round-off lets it
+  bool left_chart = false;  // the last steps were refused since they leave the chart
+  double residual = 0;
+  int iterations = 0;
+};
+
+// Improves q and lambda of `path` and refills its momenta. The ends stay fixed.
+DiscreteNewton tighten(const BoundaryValueProblem& problem,
+                       const DiscreteNewtonOptions& options,
+                       Path& path);
+
+}  // namespace carnot

@@ -1,0 +1,73 @@
+#include "carnot/shooting/path/path.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace carnot {
+
+void fill_momenta(const Dynamics& dynamics, double h, Path& path) {
+  const int n = dynamics.dof;
+  const int k = dynamics.transcribed;
+  path.p.assign(path.q.size(), 0);
+  std::vector<double> x(2 * n + k);
+  std::vector<double> gradient(2 * n + k);
+  for (int i = 0; i < path.intervals; ++i) {
+    path.gather(i, k, x.data());
+    dynamics.discrete_lagrangian(h, x.data(), gradient.data(), nullptr);
+    const double at_left = i == 0 ? 1 : 0.5;
+    const double at_right = i + 1 == path.intervals ? 1 : 0.5;
+    for (int j = 0; j < n; ++j) {
+      path.p[i * n + j] -= at_left * gradient[j];
+      path.p[(i + 1) * n + j] += at_right * gradient[n + j];
+    }
+  }
+}
+
+bool same_chart(const Dynamics& dynamics, const double* a, const double* b) {
+  return dynamics.chart(a) * dynamics.chart(b) > 0;
+}
+
+bool in_one_chart(const Dynamics& dynamics, const Path& path) {
+  for (int i = 0; i < path.intervals; ++i) {
+    if (!same_chart(dynamics, path.configuration(i), path.configuration(i + 1))) return false;
+  }
+  return true;
+}
+
+bool skims_chart_end(const Dynamics& dynamics, const Path& path) {
+  constexpr double kFactor = 2.5;
+  constexpr double kBelowEnds = 0.5;
+  if (!in_one_chart(dynamics, path)) return false;
+  const auto chart = [&](int i) { return std::abs(dynamics.chart(path.configuration(i))); };
+  const double ends = std::min(chart(0), chart(path.intervals));
+  for (int i = 0; i < path.intervals; ++i) {
+    const double here = chart(i);
+    const double next = chart(i + 1);
+    const double nearer = std::min(here, next);
+    if (nearer < kBelowEnds * ends && std::max(here, next) > kFactor * nearer) return true;
+  }
+  return false;
+}
+
+double discrete_action(const Dynamics& dynamics, double h, const Path& path) {
+  const int n = path.dof;
+  std::vector<double> middle(n), velocity(n), terms(n + dynamics.transcribed + 1);
+  double action = 0;
+  for (int i = 0; i < path.intervals; ++i) {
+    for (int j = 0; j < n; ++j) {
+      middle[j] = 0.5 * (path.configuration(i)[j] + path.configuration(i + 1)[j]);
+      velocity[j] = (path.configuration(i + 1)[j] - path.configuration(i)[j]) / h;
+    }
+    if (!dynamics.midpoint(middle.data(), velocity.data(), terms.data(), nullptr)) continue;
+    for (int j = 0; j < n; ++j) action += 0.5 * h * terms[j] * terms[j];
+    action -= h * terms[n + dynamics.transcribed];
+  }
+  return action;
+}
+
+void Path::gather(int i, int multipliers, double* x) const {
+  std::copy(configuration(i), configuration(i) + 2 * dof, x);
+  std::copy(lambda.data() + i * multipliers, lambda.data() + (i + 1) * multipliers, x + 2 * dof);
+}
+
+}  // namespace carnot

@@ -1,0 +1,119 @@
+#include "carnot/shooting/path/refinement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "carnot/shooting/path/discrete_newton.h"
+#include "carnot/shooting/path/relaxation.h"
+
+namespace carnot {
+namespace {
+
+// Largest change of the momenta at common nodes, relative to the largest momentum.
+double change_of(const Path& coarse, const Path& fine) {
+  double change = 0;
+  double largest = 0;
+  for (int i = 0; i <= coarse.intervals; ++i) {
+    for (int j = 0; j < coarse.dof; ++j) {
+      const double p = fine.momentum(2 * i)[j];
+      change = std::max(change, std::abs(p - coarse.momentum(i)[j]));
+      largest = std::max(largest, std::abs(p));
+    }
+  }
+  return largest > 0 ? change / largest : 0;
+}
+
+Path extrapolated(const Path& coarse, const Path& fine) {
+  Path path = coarse;
+  for (int i = 0; i <= coarse.intervals; ++i) {
+    for (int j = 0; j < coarse.dof; ++j) {
+      path.configuration(i)[j] +=
+          4.0 / 3 * (fine.configuration(2 * i)[j] - coarse.configuration(i)[j]);
+      path.p[i * coarse.dof + j] += 4.0 / 3 * (fine.momentum(2 * i)[j] - coarse.momentum(i)[j]);
+    }
+  }
+  return path;
+}
+
+// The discrete extremal near `coarse` with twice as many intervals: by Newton's method or, where
+// the coarse one is too far away for it, by relaxing once more.
+std::optional<Path> finer(const BoundaryValueProblem& problem, const Path& coarse) {
+  constexpr int kMostRelaxed = 128;
+  DiscreteNewtonOptions newton;
+  newton.max_iterations = 40;
+  const bool walled = in_one_chart(problem.dynamics, coarse);
+  Path path = halved(coarse);
+  if (walled && !in_one_chart(problem.dynamics, path)) return std::nullopt;
+  if (tighten(problem, newton, path).converged) return path;
+  if (path.intervals > kMostRelaxed) return std::nullopt;
+  RelaxationOptions relaxation;
+  relaxation.penalty = 100;  // keeps the path near the constraints that it nearly satisfies
+  path = halved(coarse);
+  relax(problem, relaxation, path);
+  if (tighten(problem, newton, path).converged) return path;
+  return std::nullopt;
+}
+
+}  // namespace
+
+Path halved(const Path& path) {
+  const int n = path.dof;
+  const int last = path.intervals;
+  const int k = last > 0 ? static_cast<int>(path.lambda.size()) / last : 0;
+  Path fine;
+  fine.intervals = 2 * last;
+  fine.dof = n;
+  fine.q.resize(static_cast<std::size_t>(fine.intervals + 1) * n);
+  fine.lambda.resize(static_cast<std::size_t>(fine.intervals) * k);
+  for (int i = 0; i <= last; ++i) {
+    std::copy(path.configuration(i), path.configuration(i) + n, fine.configuration(2 * i));
+  }
+  for (int i = 0; i < last; ++i) {
+    const int first = std::clamp(i - 1, 0, last - 3);  // of four nodes that interpolate
+    for (int j = 0; j < n; ++j) {
+      const auto q = [&](int node) { return path.configuration(first + node)[j]; };
+      double middle = (-q(0) + 9 * q(1) + 9 * q(2) - q(3)) / 16;
+      if (i == first) middle = (5 * q(0) + 15 * q(1) - 5 * q(2) + q(3)) / 16;
+      if (i == first + 2) middle = (q(0) - 5 * q(1) + 15 * q(2) + 5 * q(3)) / 16;
+      fine.configuration(2 * i + 1)[j] = middle;
+    }
+  }
+  for (int i = 0; i < fine.intervals; ++i) {
+    const int at = i / 2;
+    const int other = i % 2 == 0 ? at - 1 : at + 1;
+    const bool inside = other >= 0 && other < last;
+    for (int j = 0; j < k; ++j) {
+      const auto lambda = [&](int interval) { return path.lambda[interval * k + j]; };
+      const double slope =
+          inside ? lambda(other) - lambda(at) : lambda(at) - lambda(2 * at - other);
+      fine.lambda[i * k + j] = lambda(at) + 0.25 * slope;
+    }
+  }
+  return fine;
+}
+
+Refinement refine(const BoundaryValueProblem& problem,
+                  const RefinementOptions& options,
+                  const Path& path) {
+  Refinement result;
+  constexpr double kSlowest = 0.8;  // 1/4 where the grid resolves the path; else a chase
+  std::optional<double> last_change;
+  Path coarse = path;
+  while (2 * coarse.intervals <= options.max_intervals) {
+    std::optional<Path> fine = finer(problem, coarse);
+    if (!fine) break;
+    result.found = true;
+    result.change = change_of(coarse, *fine);
+    result.intervals = fine->intervals;
+    result.path = extrapolated(coarse, *fine);
+    result.settled = result.change <= options.enough;
+    if (result.settled) break;
+    if (last_change && result.change > kSlowest * *last_change) break;
+    last_change = result.change;
+    coarse = std::move(*fine);
+  }
+  return result;
+}
+
+}  // namespace carnot

@@ -1,0 +1,36 @@
+// From a discrete extremal on a coarse grid to knots that shooting can start from.
+//
+// The midpoint transcription has an error h^2 (e_2(t) + h^2 e_4(t) + ...), so the number of
+// intervals is doubled, each time with Newton's method (discrete_newton.h), until the momenta
+// change by little; of the last two grids the combination (4 fine - coarse)/3 has an error of order
+// h^4 (Richardson). Boundary layers, as of a short steering axle on a long way, need many
+// intervals; most problems do not. A coarse extremal that has no fine counterpart is an artefact of
+// the grid and ends here.
+#pragma once
+
+#include "carnot/shooting/boundary_value_problem.h"
+#include "carnot/shooting/path/path.h"
+
+namespace carnot {
+
+struct RefinementOptions {
+  double enough = 4e-2;  // change of the momenta, relative to the largest one, at which to stop
+  int max_intervals = 1024;
+};
+
+struct Refinement {
+  bool found = false;    // there is an extremal on a finer grid,
+  bool settled = false;  // and it changes by little
+  double change = 1;     // of the momenta in the last doubling, relative
+  Path path;             // on the last but one grid, extrapolated
+  int intervals = 0;     // of the last grid
+};
+
+Refinement refine(const BoundaryValueProblem& problem,
+                  const RefinementOptions& options,
+                  const Path& path);
+
+// The path on a grid of half the step, by cubic interpolation; multipliers linearly.
+Path halved(const Path& path);
+
+}  // namespace carnot

@@ -1,0 +1,38 @@
+// Path relaxation: pull a path tight, read off a costate.
+//
+// Minimises the action of the midpoint transcription sum_i h L(qm_i, v_i) subject to
+// G(qm_i) v_i = 0 by an augmented Lagrangian: with multipliers lambda_i and weight rho,
+//
+//   sum_i h [ L - lambda.G v + rho |G v|^2 / 2 ],      lambda <- lambda - rho G v,
+//
+// each inner problem a sum of squares on a chain of nodes (chain_least_squares.h).
+// At the solution lambda are the multipliers and -D1 F_d the momentum of the midpoint rule itself
+// (lib: midpoint_transcription.h), so that shooting starts from a discrete extremal. A potential
+// enters as sqrt(2 (c - V)) with c above V along the path.
+#pragma once
+
+#include "carnot/shooting/boundary_value_problem.h"
+#include "carnot/shooting/path/path.h"
+
+namespace carnot {
+
+struct RelaxationOptions {
+  int outer_iterations = 8;   // updates of the multipliers
+  int inner_iterations = 16;  // least-squares iterations between two of them
+  double penalty = 10;        // rho relative to the mass
+  double caution = 1e-4;      // first damping: larger keeps to the valley where the path starts
+  double feasibility = 1e-3;  // |G v| / |v| at which to stop
+};
+
+struct Relaxation {
+  bool feasible = false;  // constraints met to options.feasibility
+  double action = 0;      // of the transcription
+  double violation = 0;   // max |G v| / max |v|
+  int iterations = 0;
+};
+
+// Relaxes `path` in place and fills its momenta. The ends stay fixed. Starts from the multipliers
+// of the path; none are zeros.
+Relaxation relax(const BoundaryValueProblem& problem, const RelaxationOptions& options, Path& path);
+
+}  // namespace carnot

@@ -1,0 +1,178 @@
+#include "carnot/shooting/problem/dilation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "carnot/shooting/problem/scales.h"
+
+namespace carnot {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// The admissible directions as smooth vector fields, and their brackets.
+class Fields {
+ public:
+  Fields(const Dynamics& dynamics, const double* q, double step)
+      : dynamics_(dynamics), metric_(metric_at(q)), step_(step) {}
+
+  [[nodiscard]] const MatrixXd& metric() const { return metric_; }
+  [[nodiscard]] double length(const VectorXd& v) const { return std::sqrt(v.dot(metric_ * v)); }
+
+  // Fields: the velocity of the momentum e_i, or the bracket of such a one with a field.
+  int add_velocity(int i) {
+    fields_.push_back({i, kNone});
+    return static_cast<int>(fields_.size()) - 1;
+  }
+  int add_bracket(int velocity, int field) {
+    fields_.push_back({velocity, field});
+    return static_cast<int>(fields_.size()) - 1;
+  }
+  [[nodiscard]] VectorXd value(int field, const VectorXd& q) const {
+    const auto& [first, second] = fields_[field];
+    if (second != kNone) return derivative(second, first, q) - derivative(first, second, q);
+    const VectorXd p = VectorXd::Unit(q.size(), first);
+    VectorXd velocity(q.size());
+    VectorXd lambda(dynamics_.multipliers);
+    dynamics_.evaluate(0, q.data(), p.data(), velocity.data(), lambda.data());
+    return velocity;
+  }
+
+ private:
+  static constexpr int kNone = -1;
+  struct Field {
+    int first;
+    int second;
+  };
+
+  // M + G'G: the metric M itself may be singular, on what the constraints forbid. Not a number
+  // where they cannot be evaluated.
+  [[nodiscard]] MatrixXd metric_at(const double* q) const {
+    const int n = dynamics_.dof;
+    const int rows = n + dynamics_.transcribed + 1;
+    const std::vector<double> rest(n, 0.0);
+    std::vector<double> values(rows);
+    RowMajor derivative(rows, 2 * n);
+    if (!dynamics_.midpoint(q, rest.data(), values.data(), derivative.data())) {
+      derivative.setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+    const MatrixXd terms = derivative.topRightCorner(rows - 1, n);
+    return terms.transpose() * terms;
+  }
+  // The derivative of a field along another one, by central differences.
+  [[nodiscard]] VectorXd derivative(int of, int along, const VectorXd& q) const {
+    const VectorXd direction = value(along, q);
+    const double size = length(direction);
+    if (!(size > 0)) return VectorXd::Zero(q.size());
+    const VectorXd aside = step_ / size * direction;
+    return size / (2 * step_) * (value(of, q + aside) - value(of, q - aside));
+  }
+
+  const Dynamics& dynamics_;
+  MatrixXd metric_;
+  double step_;
+  std::vector<Field> fields_;
+};
+
+}  // namespace
+
+std::optional<Dilation> Dilation::at_start(const BoundaryValueProblem& problem) {
+  constexpr double kStep = 1e-2;         // of differences, in units of S
+  constexpr double kIndependent = 1e-3;  // part of a direction that is new, in units of S^-w
+  constexpr int kMostBrackets = 4;
+  const int n = problem.dynamics.dof;
+  Dilation dilation;
+  dilation.from_ = problem.from;
+  dilation.unit_ = start_scales(problem).radian;
+  dilation.basis_.resize(n, 0);
+  Fields fields(problem.dynamics, problem.from.data(), kStep * dilation.unit_);
+  const MatrixXd& metric = fields.metric();
+  const Eigen::Map<const VectorXd> from(problem.from.data(), n);
+
+  // A direction that may be new, and the field that it is the value of.
+  struct Direction {
+    int field;
+    VectorXd value;
+  };
+  const auto fields_of = [](const std::vector<Direction>& list) {
+    std::vector<int> fields;
+    for (const Direction& direction : list) fields.push_back(direction.field);
+    return fields;
+  };
+  // Adds those of `directions` that are new to the basis, largest first, and returns their fields.
+  const auto extend = [&](std::vector<Direction>& directions, int weight) {
+    std::vector<int> chosen;
+    for (;;) {
+      int best = -1;
+      double largest = kIndependent;
+      for (std::size_t i = 0; i < directions.size(); ++i) {
+        VectorXd& rest = directions[i].value;
+        rest -= dilation.basis_ * (dilation.basis_.transpose() * (metric * rest));
+        if (!(fields.length(rest) > largest)) continue;
+        largest = fields.length(rest);
+        best = static_cast<int>(i);
+      }
+      if (best < 0) return chosen;
+      dilation.basis_.conservativeResize(n, dilation.basis_.cols() + 1);
+      dilation.basis_.rightCols(1) = directions[best].value / largest;
+      dilation.weights_.push_back(weight);
+      chosen.push_back(directions[best].field);
+    }
+  };
+
+  std::vector<Direction> directions;
+  for (int i = 0; i < n; ++i) {
+    const int field = fields.add_velocity(i);
+    directions.push_back({field, fields.value(field, from)});
+  }
+  const std::vector<int> frame = extend(directions, 1);
+  // All with as many brackets: one that vanishes here, as where the frame loses rank, has brackets
+  // that do not.
+  std::vector<int> latest = fields_of(directions);
+  double scale = 1;
+  for (int weight = 2; weight <= kMostBrackets && dilation.dof() < n; ++weight) {
+    scale *= dilation.unit_;
+    directions.clear();
+    for (const int x : frame) {
+      for (const int field : latest) {
+        if (field == x) continue;
+        const int bracket = fields.add_bracket(x, field);
+        directions.push_back({bracket, scale * fields.value(bracket, from)});
+      }
+    }
+    extend(directions, weight);
+    latest = fields_of(directions);
+  }
+  if (dilation.dof() < n || !dilation.basis_.allFinite()) return std::nullopt;
+  dilation.inverse_ = dilation.basis_.transpose() * metric;
+  return dilation;
+}
+
+VectorXd Dilation::coordinates(const double* q) const {
+  VectorXd moved(dof());
+  for (int j = 0; j < dof(); ++j) moved[j] = q[j] - from_[j];
+  return inverse_ * moved;
+}
+
+void Dilation::place(const VectorXd& y, double* q) const {
+  const VectorXd moved = basis_ * y;
+  for (int j = 0; j < dof(); ++j) q[j] = from_[j] + moved[j];
+}
+
+VectorXd Dilation::scaled(VectorXd y, double factor) const {
+  for (int j = 0; j < dof(); ++j) y[j] *= std::pow(factor, weights_[j]);
+  return y;
+}
+
+double Dilation::gauge(const VectorXd& y) const {
+  double largest = 0;
+  for (int j = 0; j < dof(); ++j) {
+    largest = std::max(largest, std::pow(std::abs(y[j]) / unit_, 1.0 / weights_[j]));
+  }
+  return largest;
+}
+
+}  // namespace carnot

@@ -1,0 +1,79 @@
+#include "carnot/shooting/problem/units.h"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <vector>
+
+#include "carnot/shooting/problem/dilation.h"
+#include "carnot/shooting/problem/scales.h"
+
+namespace carnot {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// The length of the extremal where there is no potential: |q'| T.
+double length_of(const BoundaryValueProblem& problem, const double* p0) {
+  const Dynamics& dynamics = problem.dynamics;
+  std::vector<double> velocity(dynamics.dof), lambda(dynamics.multipliers + 1);
+  const std::vector<double> zero(dynamics.dof, 0.0);
+  const auto energy = [&](const double* p) {
+    return dynamics.evaluate(0, problem.from.data(), p, velocity.data(), lambda.data()).hamiltonian;
+  };
+  return problem.time * std::sqrt(2 * (energy(p0) - energy(zero.data())));
+}
+
+}  // namespace
+
+Units::Units(const BoundaryValueProblem& problem, const double* p0) {
+  constexpr double kShort = 0.1;  // of a radian
+  if (!problem.dynamics.has_transcription()) return;
+  const double length = length_of(problem, p0);
+  const double unit = start_scales(problem).radian;
+  if (!(length > 0 && length < kShort * unit)) return;
+  const auto dilation = Dilation::at_start(problem);
+  if (!dilation) return;
+  const int n = dilation->dof();
+  e_.resize(n, n);
+  for (int j = 0; j < n; ++j) {
+    e_.col(j) = unit * std::pow(length / unit, dilation->weights()[j]) * dilation->basis().col(j);
+  }
+  inverse_ = e_.inverse();
+  c_ = length * length / problem.time;
+  scaled_ = true;
+}
+
+MatrixXd Units::map(const MatrixXd& m) const {
+  if (!scaled_) return m;
+  const auto n = e_.rows();
+  MatrixXd scaled(2 * n, 2 * n);
+  scaled.leftCols(n) = m.leftCols(n) * e_;
+  scaled.rightCols(n) = c_ * m.rightCols(n) * inverse_.transpose();
+  scaled.topRows(n) = inverse_ * scaled.topRows(n).eval();
+  scaled.bottomRows(n) = e_.transpose() * scaled.bottomRows(n).eval() / c_;
+  return scaled;
+}
+
+MatrixXd Units::tangent(const MatrixXd& columns) const {
+  if (!scaled_) return columns;
+  const auto n = e_.rows();
+  MatrixXd scaled = c_ * columns * inverse_.transpose();
+  scaled.topRows(n) = inverse_ * scaled.topRows(n).eval();
+  scaled.bottomRows(n) = e_.transpose() * scaled.bottomRows(n).eval() / c_;
+  return scaled;
+}
+
+double Units::size(const VectorXd& p) const {
+  return scaled_ ? (e_.transpose() * p / c_).norm() : p.norm();
+}
+
+VectorXd Units::displacement(const VectorXd& q) const {
+  return scaled_ ? VectorXd(inverse_ * q) : q;
+}
+
+MatrixXd Units::momenta(const MatrixXd& p) const {
+  return scaled_ ? MatrixXd(c_ * inverse_.transpose() * p) : p;
+}
+
+}  // namespace carnot

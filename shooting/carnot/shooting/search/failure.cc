@@ -1,0 +1,158 @@
+#include "carnot/shooting/search/failure.h"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "carnot/shooting/extremal/conjugate_times.h"
+#include "carnot/shooting/shoot/end_point.h"
+
+namespace carnot {
+namespace {
+
+constexpr long kSteps = 256;  // of the flow from the momentum of a discrete extremal
+
+std::string regularity(const BoundaryValueProblem& problem) {
+  std::vector<double> velocity(problem.dynamics.dof);
+  std::vector<double> lambda(problem.dynamics.multipliers + 1);
+  const std::vector<double> zero(problem.dynamics.dof, 0.0);
+  const PointValues at =
+      problem.dynamics.evaluate(0, problem.to.data(), zero.data(), velocity.data(), lambda.data());
+  return at.status == RateStatus::kOk ? "" : "; at the target: " + std::string(describe(at.status));
+}
+
+// What the flow from p0 says.
+struct EndPoint {
+  std::string text;
+  bool beyond_double = false;  // the inverse of dq(T)/dp0 leaves no digit
+};
+
+EndPoint end_point(const BoundaryValueProblem& problem, const std::vector<double>& p0) {
+  std::ostringstream text;
+  text.precision(2);
+  const int n = problem.dynamics.dof;
+  std::vector<double> z;
+  const auto tangent = end_point_tangent(problem, p0, problem.time, kSteps, z);
+  if (!tangent) return {"the flow from its momentum cannot be integrated"};
+  const Eigen::VectorXd values =
+      Eigen::JacobiSVD<Eigen::MatrixXd>(tangent->topRows(n)).singularValues();
+  const auto rank = n - static_cast<int>(kernel_of(Units(problem, p0.data()), *tangent).cols());
+  const double condition = values[0] / values[n - 1];
+  text << "the flow from its momentum ends " << largest_difference(z.data(), problem.to.data(), n)
+       << " away, where dq(T)/dp(0) has rank " << rank << " of " << n << " and condition "
+       << condition;
+  const ConjugateTimes conjugate =
+      conjugate_times(problem, knots_of(problem, p0, 1, kSteps), kSteps / 4);
+  if (conjugate.known) {
+    if (conjugate.times.empty())
+      text << ", before any conjugate time";
+    else
+      text << ", past a conjugate time at " << conjugate.times.front();
+  }
+  return {text.str(), !(condition * std::numeric_limits<double>::epsilon() < 1)};
+}
+
+// How far extremals went that were found but not wanted; infinite where there is none.
+double shortest_length(const Search& search) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const Extremal& longer : search.extremals(true)) {
+    shortest = std::min(shortest, longer.geodesic.length.value_or(shortest));
+  }
+  return shortest;
+}
+
+// What became of discrete extremals, none of which is verified.
+std::string fate(Reason furthest) {
+  switch (furthest) {
+    case Reason::kNotRefined:
+      return "discrete extremals were found but have no counterpart on finer grids";
+    case Reason::kFlowFailed:
+      return "discrete extremals were found but the flow along them cannot be integrated";
+    case Reason::kNotJoined:
+      return "discrete extremals were found but shooting from them did not converge";
+    case Reason::kBeyondDouble:
+      return "discrete extremals were found but none that double precision can verify";
+    default:
+      return "discrete extremals were found but none could be verified";
+  }
+}
+
+bool parted(const BoundaryValueProblem& problem) {
+  return !same_chart(problem.dynamics, problem.from.data(), problem.to.data());
+}
+
+// What was tried, in words.
+std::string effort(const BoundaryValueProblem& problem, const Search& search) {
+  std::string tried =
+      std::to_string(search.starts()) + (search.starts() == 1 ? " start" : " starts") + " tried";
+  if (search.blocked() > 0) {
+    tried += ", of which " + std::to_string(search.blocked()) +
+             " ran into a singularity of the coordinates";
+  }
+  if (parted(problem)) tried += ", between ends that a singularity of the coordinates parts";
+  return tried;
+}
+
+// Whether the coordinates stand in the way, and what helps then.
+bool in_the_way(const BoundaryValueProblem& problem, const Search& search) {
+  return parted(problem) || 2 * search.blocked() > search.starts();
+}
+constexpr const char* kOtherCoordinates =
+    "try more --starts, ends further from it, or other coordinates, such as a unit quaternion";
+
+Failure no_discrete(const BoundaryValueProblem& problem, const Search& search) {
+  const std::string none = "no path relaxed to a discrete extremal (" + effort(problem, search);
+  if (in_the_way(problem, search)) {
+    return {Reason::kSingularCoordinates,
+            none + "): there may be no geodesic that keeps clear of it; " + kOtherCoordinates};
+  }
+  std::ostringstream residual;
+  residual.precision(2);
+  residual << "best residual " << search.least_residual() << " of the momentum";
+  const bool collapsed = std::isinf(search.least_residual());
+  return {Reason::kNoStartConverged,
+          none + ", " + (collapsed ? "all collapsed to the straight line" : residual.str()) +
+              regularity(problem) +
+              "): try more --starts, another --seed, or a target less far away"};
+}
+
+}  // namespace
+
+Failure explain_failure(const BoundaryValueProblem& problem,
+                        const Search& search,
+                        const GeodesicOptions& options) {
+  const std::string tried = effort(problem, search);
+  const bool joined = search.furthest() >= Reason::kNotVerified;
+  const double shortest = shortest_length(search);
+  if (std::isfinite(shortest)) {
+    return {Reason::kTooLong,
+            "the shortest extremal found has the length " + std::to_string(shortest) +
+                ": try a larger --max-length"};
+  }
+  if (!options.guess.empty()) {
+    return {joined ? search.furthest() : Reason::kGuessFailed,
+            "the guess did not lead to an extremal (" + end_point(problem, options.guess).text +
+                "): leave --guess out to search from paths"};
+  }
+  if (!problem.dynamics.has_transcription()) {
+    return {joined ? search.furthest() : Reason::kNoStartConverged,
+            "no momentum led to an extremal (" + tried + regularity(problem) +
+                "): try more --starts, another --seed, a --guess, or a target less far away"};
+  }
+  const Path* nearest = search.nearest_discrete();
+  if (nearest == nullptr) return no_discrete(problem, search);
+  const std::vector<double> p0(nearest->momentum(0), nearest->momentum(0) + nearest->dof);
+  const EndPoint end = end_point(problem, p0);
+  const bool beyond = !joined && end.beyond_double;
+  const Reason reason = beyond ? Reason::kBeyondDouble : search.furthest();
+  return {reason,
+          fate(reason) + " (" + tried + "; of the one of least action, " + end.text +
+              regularity(problem) + "): " +
+              (in_the_way(problem, search)
+                   ? kOtherCoordinates
+                   : "try a larger --tolerance, more --starts or another --seed")};
+}
+
+}  // namespace carnot

@@ -1,0 +1,24 @@
+// Why a search has found nothing, and what to try.
+#pragma once
+
+#include <string>
+
+#include "carnot/shooting/geodesic_options.h"
+#include "carnot/shooting/reason.h"
+#include "carnot/shooting/search/search.h"
+
+namespace carnot {
+
+struct Failure {
+  Reason reason = Reason::kNone;
+  std::string message;
+};
+
+// Where the search came nearest: the residual of the best path and, at its momentum, rank and
+// condition of dq(T)/dp0, how far its end is from the target, the first conjugate time and whether
+// the saddle system at the ends is regular.
+Failure explain_failure(const BoundaryValueProblem& problem,
+                        const Search& search,
+                        const GeodesicOptions& options);
+
+}  // namespace carnot

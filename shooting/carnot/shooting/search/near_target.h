@@ -1,0 +1,56 @@
+// Discrete extremals to targets that are very near, by way of targets that are not.
+//
+// A target whose displacement takes brackets of order w and has size d^w is reached by a path of
+// size d with momenta up to d^(1 - w) or so: the ratio of the scales leaves a penalty method no
+// digits. Dilated (dilation.h) the target is easy, and its extremals look like those wanted;
+// Newton's method (discrete_newton.h) follows each while the dilation is taken back. By what power
+// of the dilation a coordinate of the path shrinks is read off the last step.
+#pragma once
+
+#include <optional>
+#include <utility>
+
+#include "carnot/shooting/boundary_value_problem.h"
+#include "carnot/shooting/path/path.h"
+#include "carnot/shooting/problem/dilation.h"
+
+namespace carnot {
+
+class NearTarget {
+ public:
+  // Nothing where the problem is easy as it is, or has no dilation.
+  static std::optional<NearTarget> of(const BoundaryValueProblem& problem);
+
+  // A way to the target: by dilations, or straight, by stretching its displacement as it is, from
+  // where the path is about `factor` times larger.
+  struct Way {
+    double factor = 1;
+    bool straight = false;
+  };
+  // The one that a start uses: by dilation from where relaxation does best, straight, or from half
+  // or a quarter of the dilation. On the way back extremals meet others, and what is found by one
+  // may be lost by another.
+  [[nodiscard]] Way way(int start) const;
+  // The easy problem.
+  [[nodiscard]] BoundaryValueProblem easy(const Way& way) const;
+  // From a discrete extremal of the easy problem to one of the problem itself. False when it is
+  // lost on the way.
+  bool shrink(Way way, Path& path) const;
+
+ private:
+  NearTarget(const BoundaryValueProblem& problem,
+             Dilation dilation,
+             double dilated,
+             double stretched)
+      : problem_(problem),
+        dilation_(std::move(dilation)),
+        dilated_(dilated),
+        stretched_(stretched) {}
+
+  const BoundaryValueProblem& problem_;
+  Dilation dilation_;
+  double dilated_;  // factors of the ways
+  double stretched_;
+};
+
+}  // namespace carnot

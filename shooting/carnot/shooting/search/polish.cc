@@ -1,0 +1,130 @@
+#include "carnot/shooting/search/polish.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "carnot/shooting/path/refinement.h"
+#include "carnot/shooting/shoot/end_point.h"
+#include "carnot/shooting/shoot/multiple_shooting.h"
+
+namespace carnot {
+namespace {
+
+constexpr int kSegments = 8;    // at least; divides the intervals of a path
+constexpr long kFewSteps = 16;  // of the method over the whole time, at least
+
+void come_to(Reason& furthest, Reason reason) { furthest = std::max(furthest, reason); }
+
+// Joins the knots on a refined path. Where a segment cannot be integrated, or magnifies too much
+// for Newton's method to keep its digits, they are set closer together.
+std::optional<Extremal> join(const BoundaryValueProblem& problem,
+                             const GeodesicOptions& options,
+                             const Refinement& refined,
+                             int patience,
+                             Reason& furthest) {
+  constexpr double kMaxGrowth = 1e5;
+  constexpr int kIntervalsPerSegment = 32;
+  constexpr int kIntervalsPerStep = 8;
+  constexpr int kAttempts = 4;
+  ShootingOptions shooting;
+  shooting.minimiser = options.minimiser;
+  shooting.max_growth = kMaxGrowth;
+  if (options.minimiser == "newton") shooting.max_iterations = patience;
+  shooting.steps = std::max<long>(kFewSteps, refined.intervals / kIntervalsPerStep);
+  int segments = std::max(kSegments, refined.intervals / kIntervalsPerSegment);
+  for (int attempt = 0; attempt < kAttempts && segments <= refined.path.intervals; ++attempt) {
+    Knots knots = knots_of(refined.path, segments);
+    const Shooting joined = shoot(problem, shooting, knots);
+    if (joined.converged) {
+      Reason why = Reason::kNone;
+      auto extremal =
+          verify(problem, std::move(knots), 2 * shooting.steps, options.tolerance, &why);
+      come_to(furthest, why);
+      return extremal;
+    }
+    const bool begun = joined.iterations > 0 || joined.growth > 0;
+    come_to(furthest, begun ? Reason::kNotJoined : Reason::kFlowFailed);
+    if (begun && joined.growth <= kMaxGrowth) break;
+    segments *= 2;
+    shooting.steps = begun ? std::max<long>(shooting.steps, segments) : 2 * shooting.steps;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Extremal> shoot_along(const BoundaryValueProblem& problem,
+                                    const GeodesicOptions& options,
+                                    const Path& path) {
+  constexpr double kPart = 1e-6;  // of the distance; near enough to be verified
+  const int n = path.dof;
+  const double h = problem.time / path.intervals;
+  std::vector<double> velocity(n);
+  for (int j = 0; j < n; ++j) {
+    velocity[j] = (path.configuration(1)[j] - path.configuration(0)[j]) / h;
+  }
+  std::vector<double> p0(n);
+  const std::vector<double> lambda(problem.dynamics.multipliers + 1, 0.0);
+  problem.dynamics.momentum(0, problem.from.data(), velocity.data(), lambda.data(), p0.data());
+  const double distance = largest_difference(problem.from.data(), problem.to.data(), n);
+  Eigen::MatrixXd tangent;
+  if (!(correct(problem, kFewSteps, 0, p0, tangent) <= kPart * distance)) return std::nullopt;
+  return verify(problem, knots_of(problem, p0, 1, kFewSteps), 2 * kFewSteps, options.tolerance);
+}
+
+std::optional<Extremal> polish(const BoundaryValueProblem& problem,
+                               const GeodesicOptions& options,
+                               const Path& path,
+                               Reason* reason) {
+  // From a grid that is fine enough Newton's method takes two or three iterations. Where it takes
+  // more a finer grid, which is cheaper than the flow, comes first.
+  constexpr std::array kPatience{4, 8, 12};
+  RefinementOptions refinement;
+  refinement.enough = 4e-2;
+  Reason furthest = Reason::kNotRefined;
+  std::optional<Extremal> extremal;
+  for (const int patience : kPatience) {
+    const Refinement refined = refine(problem, refinement, path);
+    if (!refined.found) break;
+    extremal = join(problem, options, refined, patience, furthest);
+    if (extremal || !refined.settled) break;
+    refinement.enough = 0.2 * refined.change;
+  }
+  // With large multipliers knots may join what needs none.
+  if (!extremal || extremal->geodesic.verification == Verification::kKnots) {
+    auto along = shoot_along(problem, options, path);
+    if (along && (!extremal || same(*along, *extremal))) extremal = std::move(along);
+  }
+  if (!extremal && reason != nullptr) *reason = furthest;
+  return extremal;
+}
+
+std::optional<Extremal> polish(const BoundaryValueProblem& problem,
+                               const GeodesicOptions& options,
+                               const Knots& knots,
+                               Reason* reason) {
+  ShootingOptions shooting;
+  std::vector<std::string> ways{options.minimiser};
+  if (ways.front() == "newton") ways.emplace_back("ceres");  // which reaches further
+  Reason furthest = Reason::kNone;
+  for (const std::string& way : ways) {
+    for (const long steps : {kFewSteps, 4 * kFewSteps}) {
+      Knots joined = knots;
+      shooting.minimiser = way;
+      shooting.steps = steps;
+      if (!shoot(problem, shooting, joined).converged) {
+        come_to(furthest, Reason::kNotJoined);
+        continue;
+      }
+      Reason why = Reason::kNone;
+      auto extremal = verify(problem, std::move(joined), 2 * kFewSteps, options.tolerance, &why);
+      if (extremal) return extremal;
+      come_to(furthest, why);
+    }
+  }
+  if (reason != nullptr) *reason = furthest;
+  return std::nullopt;
+}
+
+}  // namespace carnot

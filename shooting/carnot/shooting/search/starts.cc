@@ -1,0 +1,113 @@
+#include "carnot/shooting/search/starts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "carnot/shooting/problem/manifold.h"
+#include "carnot/shooting/problem/scales.h"
+
+namespace carnot {
+namespace {
+
+constexpr int kModes = 3;
+
+// Amplitudes, modes x n, in units of the wiggle's size.
+std::vector<double> amplitudes(int n, std::uint64_t seed, int i) {
+  std::vector<double> a(static_cast<std::size_t>(n) * kModes, 0.0);
+  std::seed_seq sequence{seed, seed >> 32U, static_cast<std::uint64_t>(i)};
+  std::mt19937_64 random(sequence);
+  std::normal_distribution<double> normal;
+  if (i == 0) return a;  // the straight line itself
+  const int pairs = n * (n - 1) / 2;
+  const int number = i / 4;  // of the designed start, were it one
+  if (i % 4 == 3 && number < 4 * pairs) {
+    int first = 0;
+    int second = 1;
+    for (int skip = number / 4; skip > 0; --skip) {
+      if (++second == n) second = ++first + 1;
+    }
+    a[first] = number % 2 == 0 ? 1 : -1;
+    a[n + second] = number / 2 % 2 == 0 ? 1 : -1;
+    return a;
+  }
+  for (int m = 0; m < kModes; ++m) {
+    for (int j = 0; j < n; ++j) a[m * n + j] = normal(random) / (m + 1);
+  }
+  return a;
+}
+
+// The straight line plus sum_m a_m sin(m pi s), in units of `size`.
+Path wiggled_line(const BoundaryValueProblem& problem,
+                  int intervals,
+                  double size,
+                  const StartScales& scales,
+                  const std::vector<double>& a) {
+  constexpr double kMaxAngle = 1;  // radians
+  const int n = problem.dynamics.dof;
+  Path path;
+  path.intervals = intervals;
+  path.dof = n;
+  path.q.resize(static_cast<std::size_t>(intervals + 1) * n);
+  for (int node = 0; node <= intervals; ++node) {
+    const double s = static_cast<double>(node) / intervals;
+    const bool end = node == 0 || node == intervals;
+    for (int j = 0; j < n; ++j) {
+      double largest = size * scales.per_metre[j];
+      if (problem.dynamics.info.configuration[j].period > 0) largest = std::min(largest, kMaxAngle);
+      double wiggle = 0;
+      for (int m = 0; m < kModes && !end; ++m) {
+        wiggle += a[m * n + j] * std::sin((m + 1) * std::numbers::pi * s);
+      }
+      const double line = node == intervals
+                              ? problem.to[j]
+                              : problem.from[j] + s * (problem.to[j] - problem.from[j]);
+      path.configuration(node)[j] = line + largest * wiggle;
+    }
+    if (!end) (void)bring_to_manifold(problem.dynamics, path.configuration(node));
+  }
+  return path;
+}
+
+}  // namespace
+
+Start make_start(const BoundaryValueProblem& problem, std::uint64_t seed, int i, int intervals) {
+  constexpr double kMaxPenalty = 1e6;  // beyond this the least squares lose their digits
+  constexpr std::array kFactors{1.0, 0.6, 2.0};
+  constexpr std::array kPenalties{1.0, 2.5, 1.0};
+  constexpr std::array kOuter{2, 2, 1};  // one update leaves paths loose: saddles are found too
+  constexpr int kOuterStiff = 4;
+  constexpr double kStiff = 100;
+  constexpr double kRoundOff = 1e-12;  // of constraints
+  constexpr double kShrink = 0.7;      // of a wiggle that leaves the chart
+  const int n = problem.dynamics.dof;
+  const StartScales scales = start_scales(problem);
+  const double ratio = scales.distance / scales.radian;
+  const bool against = scales.violation > 0.1 * scales.distance && ratio < 0.5;
+  const std::array exponents{1.0 / 3, 0.5, against ? 1.0 / 3 : 1.0};
+  const double unit = scales.radian * std::pow(ratio, exponents[i % 3]);
+  double size = unit * kFactors[i / 3 % 3];
+  const std::vector<double> a = amplitudes(n, seed, i);
+
+  Start start;
+  start.path = wiggled_line(problem, intervals, size, scales, a);
+  if (in_one_chart(problem.dynamics, wiggled_line(problem, intervals, 0, scales, a))) {
+    while (!in_one_chart(problem.dynamics, start.path)) {
+      size *= kShrink;
+      start.path = wiggled_line(problem, intervals, size, scales, a);
+    }
+  }
+  // With rho = 10 (unit / violation)^2 collapsing to the straight line, which violates the
+  // constraints, costs about half the action of a path of that unit. Less, and it collapses.
+  const bool violates = scales.violation > kRoundOff * scales.distance;
+  const double collapse = violates ? unit / scales.violation : 1;
+  const double penalty = 10 * std::max(1.0, collapse * collapse) * kPenalties[i / 9 % 3];
+  start.relaxation.caution = i % 2 == 0 ? 1e-4 : 1e-2;
+  start.relaxation.penalty = std::min(penalty, kMaxPenalty);
+  start.relaxation.outer_iterations = penalty > kStiff ? kOuterStiff : kOuter[i / 9 % 3];
+  return start;
+}
+
+}  // namespace carnot

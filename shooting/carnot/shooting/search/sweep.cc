@@ -1,0 +1,155 @@
+#include "carnot/shooting/search/sweep.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <random>
+
+#include "carnot/numerics/parallel.h"
+#include "carnot/shooting/problem/dilation.h"
+#include "carnot/shooting/problem/manifold.h"
+#include "carnot/shooting/shoot/end_point.h"
+#include "carnot/shooting/shoot/knots.h"
+
+namespace carnot {
+namespace {
+
+struct Draw {
+  std::vector<double> p;
+  double miss = std::numeric_limits<double>::infinity();
+};
+
+// A random momentum at `from` with a kinetic energy in the range; empty where there is none.
+std::vector<double> draw_momentum(const BoundaryValueProblem& problem,
+                                  const SweepOptions& options,
+                                  std::mt19937_64& random) {
+  const int n = problem.dynamics.dof;
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform(options.lowest, options.highest);
+  std::vector<double> p(n), zero(n, 0.0), velocity(n), lambda(problem.dynamics.multipliers + 1);
+  for (int j = 0; j < n; ++j) p[j] = options.momentum_scale[j] * normal(random);
+  if (!bring_to_manifold(problem, p)) return {};
+  const auto energy = [&](const std::vector<double>& at) {
+    return problem.dynamics
+        .evaluate(0, problem.from.data(), at.data(), velocity.data(), lambda.data())
+        .hamiltonian;
+  };
+  const double kinetic = energy(p) - energy(zero);  // quadratic in p
+  if (!(kinetic > 0)) return {};
+  const double factor = std::sqrt(uniform(random) / kinetic);
+  for (double& x : p) x *= factor;
+  return p;
+}
+
+std::vector<double> draw(const BoundaryValueProblem& problem, const SweepOptions& options, int i) {
+  std::seed_seq sequence{options.seed,
+                         options.seed >> 32U,
+                         static_cast<std::uint64_t>(options.round),
+                         static_cast<std::uint64_t>(i)};
+  std::mt19937_64 random(sequence);
+  return draw_momentum(problem, options, random);
+}
+
+// How far an end is from the target. Where that is near, coordinates of all weights count alike, as
+// they do not by themselves.
+class Miss {
+ public:
+  explicit Miss(const BoundaryValueProblem& problem) : problem_(problem) {
+    constexpr double kNear = 0.1;  // gauge
+    dilation_ = Dilation::at_start(problem);
+    if (!dilation_) return;
+    to_ = dilation_->coordinates(problem.to.data());
+    const double gauge = dilation_->gauge(to_);
+    if (gauge > 0 && gauge < kNear) {
+      unit_ = 1 / gauge;
+    } else {
+      dilation_.reset();
+    }
+  }
+
+  [[nodiscard]] double of(const double* q) const {
+    if (!dilation_) return largest_difference(q, problem_.to.data(), problem_.dynamics.dof);
+    return dilation_->scaled(dilation_->coordinates(q) - to_, unit_).cwiseAbs().maxCoeff();
+  }
+
+ private:
+  const BoundaryValueProblem& problem_;
+  std::optional<Dilation> dilation_;
+  Eigen::VectorXd to_;
+  double unit_ = 1;
+};
+
+// Runs all of them at once and sets `miss`: infinite where the flow fails.
+void run(const BoundaryValueProblem& problem, int threads, std::vector<Draw>& draws) {
+  constexpr double kTolerance = 1e-4;  // only the order of the misses counts
+  constexpr long kSteps = 16;          // enough to see where a trajectory goes
+  const Dynamics& dynamics = problem.dynamics;
+  const int n = dynamics.dof;
+  const auto count = static_cast<int>(draws.size());
+  std::vector<double> z;
+  z.reserve(draws.size() * 2 * n);
+  for (const Draw& draw : draws) {
+    z.insert(z.end(), problem.from.begin(), problem.from.end());
+    z.insert(z.end(), draw.p.begin(), draw.p.end());
+  }
+  (void)(dynamics.has_adaptive_batch()
+             ? dynamics.adaptive_batch(0, problem.time, kTolerance, count, z.data(), threads)
+             : dynamics.flow_batch(
+                   StepPlan::equal(0, problem.time, kSteps), count, z.data(), threads));
+  const Miss target(problem);
+  for (int i = 0; i < count; ++i) {
+    const double miss = target.of(&z[static_cast<std::size_t>(i) * 2 * n]);
+    if (std::isfinite(miss)) draws[i].miss = miss;
+  }
+}
+
+// The trajectory from p with its end pulled to the target, and its multipliers.
+Path pulled(const BoundaryValueProblem& problem, const std::vector<double>& p, int intervals) {
+  const Dynamics& dynamics = problem.dynamics;
+  const int n = dynamics.dof;
+  const int k = dynamics.transcribed;
+  const Knots knots = knots_of(problem, p, intervals, intervals);
+  Path path;
+  path.intervals = intervals;
+  path.dof = n;
+  path.q.resize(static_cast<std::size_t>(intervals + 1) * n);
+  path.lambda.resize(static_cast<std::size_t>(intervals) * k);
+  path.p.resize(path.q.size());
+  for (int i = 0; i <= intervals; ++i) {
+    const double share = static_cast<double>(i) / intervals;
+    for (int j = 0; j < n; ++j) {
+      const double missing = problem.to[j] - knots.at(intervals)[j];
+      path.configuration(i)[j] = knots.at(i)[j] + share * missing;
+      path.p[i * n + j] = knots.at(i)[n + j];
+    }
+  }
+  std::copy(problem.to.begin(), problem.to.end(), path.configuration(intervals));
+  std::vector<double> middle(2 * n);
+  for (int i = 0; i < intervals && k > 0; ++i) {
+    for (int j = 0; j < 2 * n; ++j) middle[j] = 0.5 * (knots.at(i)[j] + knots.at(i + 1)[j]);
+    dynamics.midpoint_multipliers(middle.data(), middle.data() + n, path.lambda.data() + i * k);
+  }
+  return path;
+}
+
+}  // namespace
+
+std::vector<Path> near_hits(const BoundaryValueProblem& problem,
+                            const SweepOptions& options,
+                            int threads) {
+  std::vector<Draw> draws(options.flows);
+  parallel_for(options.flows, threads, [&](int i) { draws[i].p = draw(problem, options, i); });
+  std::erase_if(draws, [](const Draw& draw) { return draw.p.empty(); });
+  run(problem, threads, draws);
+  std::stable_sort(
+      draws.begin(), draws.end(), [](const Draw& a, const Draw& b) { return a.miss < b.miss; });
+  const auto kept = std::min<std::size_t>(options.keep, draws.size());
+  std::vector<Path> paths;
+  for (std::size_t i = 0; i < kept && std::isfinite(draws[i].miss); ++i) {
+    paths.push_back(pulled(problem, draws[i].p, options.intervals));
+  }
+  return paths;
+}
+
+}  // namespace carnot

@@ -1,0 +1,35 @@
+// Near hits: extremals from random momenta that end close to the target.
+//
+// A relaxation finds minimisers; extremals past a conjugate point are saddles of the action and
+// need another route. Momenta are drawn at random on energies between given bounds, the flows are
+// run, side by side in packs where the scene has them, and those that end nearest to the target
+// become paths: the end is pulled to the target, the pull spread evenly over time, and Newton's
+// method (discrete_newton.h) does the rest.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "carnot/shooting/boundary_value_problem.h"
+#include "carnot/shooting/path/path.h"
+
+namespace carnot {
+
+struct SweepOptions {
+  std::uint64_t seed = 0;
+  int round = 0;       // different draws for different rounds
+  int flows = 500;     // trajectories
+  int keep = 40;       // near hits
+  int intervals = 64;  // of the paths made
+  double lowest = 0;   // kinetic energy, drawn uniformly between the two
+  double highest = 0;
+  std::vector<double> momentum_scale;  // n standard deviations, up to a common factor
+};
+
+// At most `keep` paths, nearest first; the same whatever the number of threads. Their momenta are
+// those of the trajectories.
+std::vector<Path> near_hits(const BoundaryValueProblem& problem,
+                            const SweepOptions& options,
+                            int threads);
+
+}  // namespace carnot

@@ -1,0 +1,124 @@
+// Multiple shooting by Ceres: one residual block a segment.
+#include <ceres/ceres.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "carnot/shooting/shoot/multiple_shooting.h"
+#include "carnot/shooting/shoot/shooting_equations.h"
+
+namespace carnot {
+namespace {
+
+// Parameter blocks: q_i, p_i and, but for the last segment, q_{i+1}, p_{i+1}.
+class Jump final : public ceres::CostFunction {
+ public:
+  Jump(const ShootingEquations& equations, int i) : equations_(equations), i_(i) {
+    const int n = equations.dof();
+    const int blocks = i + 1 == equations.segments() ? 2 : 4;
+    mutable_parameter_block_sizes()->assign(blocks, n);
+    set_num_residuals(equations.residuals(i));
+  }
+
+  bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override {
+    const int n = equations_.dof();
+    const int blocks = static_cast<int>(parameter_block_sizes().size());
+    std::vector<double> z;
+    for (int b = 0; b < blocks; ++b) z.insert(z.end(), x[b], x[b] + n);
+    std::vector<double> jacobian(jacobians != nullptr ? num_residuals() * 2 * n : 0);
+    if (!equations_.evaluate(i_,
+                             z.data(),
+                             z.data() + 2 * n,
+                             residuals,
+                             jacobians != nullptr ? jacobian.data() : nullptr)) {
+      return false;
+    }
+    for (int b = 0; jacobians != nullptr && b < blocks; ++b) {
+      if (jacobians[b] == nullptr) continue;
+      for (int row = 0; row < num_residuals(); ++row) {
+        for (int j = 0; j < n; ++j) {
+          const double diagonal = row == (b - 2) * n + j ? -1 / equations_.scale(row) : 0;
+          jacobians[b][row * n + j] = b < 2 ? jacobian[row * 2 * n + b * n + j] : diagonal;
+        }
+      }
+    }
+    return true;
+  }
+
+ private:
+  const ShootingEquations& equations_;
+  int i_;
+};
+
+// Stops when the jumps are below the tolerance.
+class StopWhenJoined final : public ceres::IterationCallback {
+ public:
+  explicit StopWhenJoined(double tolerance) : cost_(0.5 * tolerance * tolerance) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    return summary.cost <= cost_ ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  double cost_;
+};
+
+// Ceres logs an error when the first evaluation fails; a library must not print.
+bool can_begin(const ShootingEquations& equations, const Knots& knots) {
+  std::vector<double> residual(2 * knots.dof);
+  for (int i = 0; i < knots.segments; ++i) {
+    if (!equations.evaluate(i, knots.at(i), knots.at(i + 1), residual.data(), nullptr))
+      return false;
+  }
+  return true;
+}
+
+ceres::Solver::Options solver_options(const BoundaryValueProblem& problem,
+                                      const ShootingOptions& options) {
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::DENSE_QR;
+  solver.max_num_iterations = options.max_iterations;
+  solver.function_tolerance = 0;
+  solver.gradient_tolerance = 0;
+  solver.parameter_tolerance = 1e-15;
+  solver.initial_trust_region_radius = 1e6;  // the start is good: nearly Newton's method
+  // Momenta along the rows of Dh move nothing: columns of zeros that need a diagonal.
+  if (problem.dynamics.forced > 0) solver.min_lm_diagonal = 1e-2;
+  solver.num_threads = 1;
+  solver.logging_type = ceres::SILENT;
+  return solver;
+}
+
+}  // namespace
+
+Shooting shoot_with_ceres(const BoundaryValueProblem& problem,
+                          const ShootingOptions& options,
+                          Knots& knots) {
+  const int n = knots.dof;
+  const ShootingEquations equations(problem, knots, options.steps);
+  if (!can_begin(equations, knots)) return {};
+  ceres::Problem joined;
+  for (int i = 0; i < knots.segments; ++i) {
+    double* z = knots.at(i);
+    auto* jump = new Jump(equations, i);
+    if (i + 1 == knots.segments) {
+      joined.AddResidualBlock(jump, nullptr, z, z + n);
+    } else {
+      joined.AddResidualBlock(jump, nullptr, z, z + n, z + 2 * n, z + 3 * n);
+    }
+  }
+  joined.SetParameterBlockConstant(knots.at(0));
+  StopWhenJoined stop(options.tolerance);
+  ceres::Solver::Options solver = solver_options(problem, options);
+  solver.callbacks.push_back(&stop);
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &joined, &summary);
+
+  Shooting result;
+  result.iterations = static_cast<int>(summary.iterations.size());
+  result.residual = std::sqrt(2 * summary.final_cost);
+  result.converged = summary.IsSolutionUsable() && result.residual <= options.tolerance;
+  result.converged = equations.complete(knots) && result.converged;
+  return result;
+}
+
+}  // namespace carnot

@@ -1,0 +1,39 @@
+// Phase points at equidistant shooting times, the unknowns of multiple shooting.
+#pragma once
+
+#include <vector>
+
+#include "carnot/shooting/boundary_value_problem.h"
+#include "carnot/shooting/path/path.h"
+
+namespace carnot {
+
+// Knots i = 0..segments at times i T / segments. z is (segments + 1) x 2n, rows (q, p); the last
+// row is what the last segment's flow gives, so q there is near `to` but is not set to it.
+struct Knots {
+  int segments = 0;
+  int dof = 0;
+  std::vector<double> z;
+
+  [[nodiscard]] const double* at(int i) const { return z.data() + i * 2 * dof; }
+  [[nodiscard]] double* at(int i) { return z.data() + i * 2 * dof; }
+  [[nodiscard]] std::vector<double> p0() const { return {at(0) + dof, at(0) + 2 * dof}; }
+};
+
+// Every (intervals / segments)-th node of a relaxed path.
+Knots knots_of(const Path& path, int segments);
+
+// The extremal from (from, p0), cut into segments; `steps` of the method in all. Where the flow
+// fails the remaining knots repeat the last one.
+Knots knots_of(const BoundaryValueProblem& problem,
+               const std::vector<double>& p0,
+               int segments,
+               long steps);
+
+// Every so many-th sample of a recorded extremal; `segments` + 1 of them must be equidistant.
+Knots knots_of(const Trajectory& samples, int segments);
+
+// The plan of segment i when the whole time takes about `steps` steps.
+StepPlan knot_plan(const BoundaryValueProblem& problem, int segments, int i, long steps);
+
+}  // namespace carnot

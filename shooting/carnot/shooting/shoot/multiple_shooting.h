@@ -1,0 +1,51 @@
+// Multiple shooting: join short flows into one extremal.
+//
+// Each flow is short, so |dz(t_{i+1})/dz(t_i)| stays moderate where single shooting sees up to
+// 1e16. One segment is single shooting. The zero of the equations (shooting_equations.h) is found
+//   newton               by Newton's method on the banded system, with damping,
+//   ceres                by Levenberg-Marquardt on their sum of squares,
+//   nlopt, nlopt:slsqp   by NLopt's SLSQP with the jumps as equality constraints,
+//   nlopt:lbfgs          by L-BFGS on the sum of squares, then SLSQP,
+//   nlopt:mlsl, nlopt:isres, nlopt:crs   by a global search of a box around p(0), then SLSQP.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "carnot/shooting/shoot/knots.h"
+
+namespace carnot {
+
+struct ShootingOptions {
+  std::string minimiser = "newton";
+  int max_iterations = 30;   // NLopt may take twice as many evaluations
+  long steps = 32;           // of the method over the whole time; at least one a segment
+  double tolerance = 1e-9;   // Euclidean norm of the scaled jumps
+  double max_growth = 1e12;  // of newton: it stops where a scaled tangent flow is larger
+};
+
+struct Shooting {
+  bool converged = false;
+  double residual = 0;  // Euclidean norm of the scaled jumps
+  int iterations = 0;
+  double growth = 0;  // largest entry of the scaled tangent flows; of newton only
+};
+
+// Improves `knots` in place. q(0) stays fixed.
+Shooting shoot(const BoundaryValueProblem& problem, const ShootingOptions& options, Knots& knots);
+
+// Names accepted by ShootingOptions::minimiser.
+std::vector<std::string> minimisers();
+
+// The ways; `shoot` chooses.
+Shooting shoot_with_newton(const BoundaryValueProblem& problem,
+                           const ShootingOptions& options,
+                           Knots& knots);
+Shooting shoot_with_ceres(const BoundaryValueProblem& problem,
+                          const ShootingOptions& options,
+                          Knots& knots);
+Shooting shoot_with_nlopt(const BoundaryValueProblem& problem,
+                          const ShootingOptions& options,
+                          Knots& knots);
+
+}  // namespace carnot

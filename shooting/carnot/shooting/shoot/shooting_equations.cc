@@ -1,0 +1,60 @@
+#include "carnot/shooting/shoot/shooting_equations.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace carnot {
+
+ShootingEquations::ShootingEquations(const BoundaryValueProblem& problem,
+                                     const Knots& knots,
+                                     long steps)
+    : problem_(problem), segments_(knots.segments), dof_(knots.dof), steps_(steps) {
+  double q_scale = 0;
+  double p_scale = 0;
+  for (int j = 0; j < dof_; ++j) {
+    q_scale = std::max(q_scale, std::abs(problem.to[j] - problem.from[j]));
+  }
+  for (int i = 0; i <= segments_; ++i) {
+    for (int j = 0; j < dof_; ++j) {
+      q_scale = std::max(q_scale, std::abs(knots.at(i)[j] - problem.from[j]));
+      p_scale = std::max(p_scale, std::abs(knots.at(i)[dof_ + j]));
+    }
+  }
+  constexpr double kRest = 1e-12;  // less is round-off: nothing moves, and any unit will do
+  if (q_scale < kRest) q_scale = 1;
+  if (p_scale < kRest) p_scale = 1;
+  scale_.assign(2 * dof_, p_scale);
+  std::fill(scale_.begin(), scale_.begin() + dof_, q_scale);
+}
+
+bool ShootingEquations::evaluate(
+    int i, const double* z, const double* next, double* residual, double* jacobian) const {
+  const bool last = i + 1 == segments_;
+  const int size = 2 * dof_;
+  const StepPlan plan = knot_plan(problem_, segments_, i, steps_);
+  std::vector<double> end(z, z + size);
+  std::vector<double> tangent(jacobian != nullptr ? size * size : 0);
+  const FlowReport report = jacobian != nullptr
+                                ? problem_.dynamics.tangent_flow(plan, end.data(), tangent.data())
+                                : problem_.dynamics.flow(plan, end.data());
+  if (!report.completed()) return false;
+  const double* wanted = last ? problem_.to.data() : next;
+  for (int row = 0; row < residuals(i); ++row) {
+    residual[row] = (end[row] - wanted[row]) / scale_[row];
+    if (!std::isfinite(residual[row])) return false;
+    for (int j = 0; jacobian != nullptr && j < size; ++j) {
+      jacobian[row * size + j] = tangent[row * size + j] / scale_[row];
+      if (!std::isfinite(jacobian[row * size + j])) return false;
+    }
+  }
+  return true;
+}
+
+bool ShootingEquations::complete(Knots& knots) const {
+  const int last = segments_ - 1;
+  std::copy(knots.at(last), knots.at(last) + 2 * dof_, knots.at(segments_));
+  return problem_.dynamics.flow(knot_plan(problem_, segments_, last, steps_), knots.at(segments_))
+      .completed();
+}
+
+}  // namespace carnot

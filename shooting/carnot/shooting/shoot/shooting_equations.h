@@ -1,0 +1,43 @@
+// The equations of multiple shooting, segment by segment, for any minimiser.
+//
+// Unknowns are p(0) and the phase points at the inner knots; segment i asks for
+// flow(z_i) = z_{i+1}, the last one for q(T) = to. Jacobians are tangent flows, exact for the
+// discrete map. Residuals are divided by the size of q, or p, along the path.
+#pragma once
+
+#include <vector>
+
+#include "carnot/shooting/shoot/knots.h"
+
+namespace carnot {
+
+class ShootingEquations {
+ public:
+  // `steps` of the method over the whole time. Keeps a reference to `problem`.
+  ShootingEquations(const BoundaryValueProblem& problem, const Knots& knots, long steps);
+
+  [[nodiscard]] int segments() const { return segments_; }
+  [[nodiscard]] int dof() const { return dof_; }
+  // Residuals of segment i: 2n, or n for the last one.
+  [[nodiscard]] int residuals(int i) const { return i + 1 == segments_ ? dof_ : 2 * dof_; }
+
+  // Residual of segment i between z (2n) and next (2n, unused for the last segment), and its
+  // Jacobian with respect to z, residuals(i) x 2n row-major, unless null. The derivative with
+  // respect to `next` is -1 / scale(row) on the diagonal. Returns false when the flow fails.
+  [[nodiscard]] bool evaluate(
+      int i, const double* z, const double* next, double* residual, double* jacobian) const;
+
+  [[nodiscard]] double scale(int row) const { return scale_[row]; }
+
+  // Replaces the last row of the knots by the last segment's flow.
+  [[nodiscard]] bool complete(Knots& knots) const;
+
+ private:
+  const BoundaryValueProblem& problem_;
+  int segments_;
+  int dof_;
+  long steps_;
+  std::vector<double> scale_;
+};
+
+}  // namespace carnot

@@ -1,0 +1,66 @@
+#include "carnot/shooting/shoot/survey.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace carnot {
+namespace {
+
+// Times of [0, T], `samples` in all, that belong to segment i: [t_i, t_{i+1}), the last one closed.
+std::vector<double> times_of_segment(const BoundaryValueProblem& problem,
+                                     int segments,
+                                     int i,
+                                     long samples) {
+  const StepPlan whole = StepPlan::equal(0, problem.time, 1);
+  std::vector<double> times;
+  const double start = problem.time * i / segments;
+  const double end = problem.time * (i + 1) / segments;
+  const double slack = 1e-12 * problem.time;
+  for (const double t : sample_times(whole, samples)) {
+    const bool last = i + 1 == segments;
+    if (t >= start - slack && (last || t < end - slack)) times.push_back(std::min(t, end));
+  }
+  return times;
+}
+
+void append(Trajectory& to, const Trajectory& from) {
+  to.t.insert(to.t.end(), from.t.begin(), from.t.end());
+  to.q.insert(to.q.end(), from.q.begin(), from.q.end());
+  to.p.insert(to.p.end(), from.p.begin(), from.p.end());
+  to.lambda.insert(to.lambda.end(), from.lambda.begin(), from.lambda.end());
+  to.hamiltonian.insert(to.hamiltonian.end(), from.hamiltonian.begin(), from.hamiltonian.end());
+}
+
+}  // namespace
+
+FlowSummary survey(const BoundaryValueProblem& problem,
+                   const Knots& knots,
+                   long steps,
+                   long samples) {
+  FlowSummary total;
+  double initial = 0;
+  for (int i = 0; i < knots.segments; ++i) {
+    std::vector<double> z(knots.at(i), knots.at(i) + 2 * knots.dof);
+    MonitorOptions options;
+    options.times = times_of_segment(problem, knots.segments, i, samples);
+    std::vector<double> unused(2 * knots.dof);
+    const double energy =
+        problem.dynamics
+            .evaluate(0, z.data(), z.data() + knots.dof, unused.data(), unused.data() + knots.dof)
+            .hamiltonian;
+    if (i == 0) initial = energy;
+    const FlowSummary part = problem.dynamics.monitored_flow(
+        knot_plan(problem, knots.segments, i, steps), z.data(), options);
+    total.report = part.report;
+    if (!part.completed()) return total;
+    total.action += part.action;
+    total.length += part.length;
+    total.energy_drift =
+        std::max(total.energy_drift, part.energy_drift + std::abs(energy - initial));
+    total.constraint_error = std::max(total.constraint_error, part.constraint_error);
+    append(total.trajectory, part.trajectory);
+  }
+  return total;
+}
+
+}  // namespace carnot

@@ -1,0 +1,21 @@
+// What may be asked of a steering function.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace carnot {
+
+struct SteeringOptions {
+  double time = 1;           // T; with V = 0 the path does not depend on it
+  bool mod_angles = true;    // angles need to agree modulo their periods only
+  int starts = 0;            // paths to relax; 0: until the least action has been hit often enough
+  double tolerance = 1e-10;  // largest endpoint error
+  double resolution = 1e-9;  // |to - from| below which the path is estimated
+  std::uint64_t seed = 0;
+  int threads = 1;            // of one search
+  std::size_t memory = 4096;  // answers kept, of about 4 KB each; the oldest are dropped
+};
+
+}  // namespace carnot

@@ -1,0 +1,177 @@
+// The calls of a Dynamics against the templates behind them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "carnot/step/gauss.h"
+#include "testing/compiled_dynamics.h"
+#include "testing/runs.h"
+
+namespace carnot::make_dynamics_test {
+namespace {
+
+using System = VelocityConstraints<scenes::VehicleCosine>;
+using Step = Gauss<System, 1>;
+constexpr int n = 4;
+constexpr int k = 2;
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+
+class MakeDynamics : public ::testing::Test {
+ protected:
+  const scenes::VehicleCosine scene_ = test::uneven<scenes::VehicleCosine>();
+  const System system_{scene_};
+  const Dynamics dynamics_ = make_dynamics(scene_, "midpoint");
+  const State<double, n> start_ = test::vehicle_start(system_);
+  const StepPlan plan_ = StepPlan::of_length(0, 1, 0.15);
+};
+
+TEST_F(MakeDynamics, KnowsItsSizes) {
+  EXPECT_EQ(dynamics_.dof, n);
+  EXPECT_EQ(dynamics_.multipliers, k);
+  EXPECT_EQ(dynamics_.order, 2);
+  EXPECT_EQ(dynamics_.info.name, "vehicle-cosine");
+}
+
+TEST_F(MakeDynamics, FlowIsTheFlow) {
+  Step step(system_);
+  auto expected = start_;
+  const FlowReport by_template = flow(step, plan_, expected);
+  Vector<double, 2 * n> z = start_.value;
+  const FlowReport report = dynamics_.flow(plan_, z.data());
+  EXPECT_TRUE(report.completed());
+  EXPECT_EQ(report.evaluations, by_template.evaluations);
+  EXPECT_EQ(report.time_reached, 1);
+  EXPECT_EQ(z, expected.value);
+}
+
+TEST_F(MakeDynamics, TangentIsRowMajor) {
+  using Square = Matrix<double, 2 * n, 2 * n>;
+  Step step(system_);
+  auto expected = start_;
+  Compensated<Square> m{Square::Identity(), Square::Zero()};
+  const auto go_on = [](long, const Step&, const auto&) { return true; };
+  ASSERT_TRUE(tangent_flow(step, plan_, expected, m, go_on).completed());
+  Vector<double, 2 * n> z = start_.value;
+  std::vector<double> rows(4 * n * n);
+  ASSERT_TRUE(dynamics_.tangent_flow(plan_, z.data(), rows.data()).completed());
+  EXPECT_EQ(z, expected.value);
+  for (int i = 0; i < 2 * n; ++i) {
+    for (int j = 0; j < 2 * n; ++j) {
+      EXPECT_EQ(rows[static_cast<std::size_t>(2 * n * i + j)], m.value(i, j));
+    }
+  }
+}
+
+TEST_F(MakeDynamics, AuditedFlowMeasuresTheSameRun) {
+  Vector<double, 2 * n> plain = start_.value;
+  Vector<double, 2 * n> audited = start_.value;
+  ASSERT_TRUE(dynamics_.flow(plan_, plain.data()).completed());
+  MonitorOptions options;
+  options.samples = 11;
+  const FlowSummary summary = dynamics_.monitored_flow(plan_, audited.data(), options);
+  ASSERT_TRUE(summary.completed());
+  EXPECT_EQ(audited, plain);
+  EXPECT_EQ(summary.trajectory.t.size(), 11U);
+  EXPECT_GT(summary.length, 0);
+  EXPECT_GT(summary.energy_drift, 0);
+  EXPECT_LE(summary.constraint_error, 16 * kEps);
+}
+
+TEST_F(MakeDynamics, ProgressMayStop) {
+  Vector<double, 2 * n> z = start_.value;
+  MonitorOptions options;
+  std::vector<double> fractions;
+  options.progress = [&](double fraction) {
+    fractions.push_back(fraction);
+    return fractions.size() < 3;
+  };
+  const FlowSummary summary =
+      dynamics_.monitored_flow(StepPlan::equal(0, 10, 10000), z.data(), options);
+  EXPECT_EQ(summary.report.status, FlowStatus::kStopped);
+  EXPECT_LT(summary.report.time_reached, 10);
+  ASSERT_EQ(fractions.size(), 3U);
+  EXPECT_LT(fractions[0], fractions[1]);
+  EXPECT_LT(fractions[1], fractions[2]);
+  EXPECT_NEAR(summary.report.time_reached, 10 * fractions[2], 0.01);
+}
+
+// evaluate() and momentum() are inverse to each other.
+TEST_F(MakeDynamics, EvaluateAndMomentumAgree) {
+  test::Generator generator(1);
+  for (int sample = 0; sample < 50; ++sample) {
+    const auto q = test::random_vector<n>(generator, 2);
+    const auto p = test::random_vector<n>(generator, 2);
+    Vector<double, n> v;
+    Vector<double, k> lambda;
+    const PointValues values = dynamics_.evaluate(0, q.data(), p.data(), v.data(), lambda.data());
+    ASSERT_EQ(values.status, RateStatus::kOk);
+    EXPECT_NEAR(values.hamiltonian, p.dot(v) - system_.lagrangian(q, v), 64 * kEps);
+    Vector<double, n> back;
+    Vector<double, n> projected = v;
+    const double violated =
+        dynamics_.momentum(0, q.data(), projected.data(), lambda.data(), back.data());
+    EXPECT_LE(violated, 64 * kEps);
+    EXPECT_LE((projected - v).cwiseAbs().maxCoeff(), 64 * kEps);
+    EXPECT_LE((back - p).cwiseAbs().maxCoeff(), 256 * kEps);
+  }
+}
+
+TEST_F(MakeDynamics, MomentumProjectsTheVelocityAndSaysHowFar) {
+  const Vector<double, n> q(0, 0, 0, 0);
+  Vector<double, n> v(3, 4, 0, 0);  // 4 sideways out of 5; theta' = y' / length missing as well
+  const double violated = system_.constraint(q, v).norm() / 5;
+  const Vector<double, k> lambda(0, 0);
+  Vector<double, n> p;
+  EXPECT_DOUBLE_EQ(dynamics_.momentum(0, q.data(), v.data(), lambda.data(), p.data()), violated);
+  EXPECT_LE(system_.constraint(q, v).norm(), 8 * kEps);
+  EXPECT_NEAR(v[0], 3, 8 * kEps);
+  Vector<double, n> rest(0, 0, 0, 0);
+  EXPECT_EQ(dynamics_.momentum(0, q.data(), rest.data(), lambda.data(), p.data()), 0);
+}
+
+// A message of validate() names the parameter.
+template <class Scene>
+std::string complaint(const Scene& scene) {
+  try {
+    validate(scene);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ValidateTest, NamesTheParameter) {
+  const double nan = std::nan("");
+  const double inf = std::numeric_limits<double>::infinity();
+  using scenes::Unicycle;
+  using scenes::Vehicle;
+  EXPECT_EQ(complaint(Vehicle{}), "");
+  EXPECT_EQ(complaint(Vehicle{0, 1, 1}), "");  // a body without inertia is fine
+  for (const double bad : {-1.0, nan, inf, -inf}) {
+    EXPECT_NE(complaint(Vehicle{bad, 1, 1}).find("alpha"), std::string::npos);
+  }
+  for (const double bad : {0.0, -1.0, nan, inf}) {
+    EXPECT_NE(complaint(Vehicle{1, bad, 1}).find("beta"), std::string::npos);
+    EXPECT_NE(complaint(Vehicle{1, 1, bad}).find("length"), std::string::npos);
+    EXPECT_NE(complaint(Unicycle{bad}).find("beta"), std::string::npos);
+    EXPECT_NE(complaint(scenes::VehicleCosine{{1, 1, bad}}).find("length"), std::string::npos);
+  }
+  EXPECT_EQ(complaint(scenes::Heisenberg{}), "");  // no parameters
+}
+
+TEST(ValidateTest, ASegmentOfABadSceneIsRefused) {
+  const scenes::VehicleCosine bad{{1, -2.5, 1}};
+  try {
+    (void)make_dynamics(bad, "midpoint");
+    FAIL() << "not refused";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("-2.5"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace carnot::make_dynamics_test
