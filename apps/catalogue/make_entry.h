@@ -21,8 +21,9 @@ Scene with_parameters([[maybe_unused]] const ParameterValues& values) {
   return scene;
 }
 
-template <class Scene>
-SceneEntry make_entry() {
+// make(scene, method): its Dynamics.
+template <class Scene, class Make>
+SceneEntry make_entry(const Make& make) {
   SceneEntry entry;
   Scene scene;
   entry.info = describe_scene(scene);
@@ -40,8 +41,8 @@ SceneEntry make_entry() {
                                   parameter.meaning});
     }
   }
-  entry.make = [](const ParameterValues& values, const std::string& method) {
-    return make_dynamics(with_parameters<Scene>(values), method);
+  entry.make = [make](const ParameterValues& values, const std::string& method) {
+    return make(with_parameters<Scene>(values), method);
   };
   return entry;
 }

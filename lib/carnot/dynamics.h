@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-#include "carnot/flow/reports.h"
+#include "carnot/flow/flow_calls.h"
 #include "carnot/scene/scene_info.h"
 
 namespace carnot {
@@ -40,15 +40,16 @@ struct Dynamics {
   int order = 0;
   bool symplectic = true;
   SceneInfo info;
-  std::shared_ptr<const void> system;
+  std::shared_ptr<const void> system;  // what the calls take, and the kernel's, too
+  Kernel kernel;                       // the method
 
   // Advances z in place; on failure z is that of time_reached. No allocation.
   [[nodiscard]] FlowReport flow(const StepPlan& plan, double* z) const {
-    return calls.flow(system.get(), plan, z);
+    return kernel.calls.flow(system.get(), kernel.method.get(), plan, z);
   }
   // The same, and m = dz(end)/dz(start), row-major 2n x 2n. No allocation.
   [[nodiscard]] FlowReport tangent_flow(const StepPlan& plan, double* z, double* m) const {
-    return calls.tangent_flow(system.get(), plan, z, m);
+    return kernel.calls.tangent_flow(system.get(), kernel.method.get(), plan, z, m);
   }
   // Advances z with an error of about `tolerance`, constant steps chosen by a trial; see
   // automatic_flow.h. Only where has_automatic_flow(). No allocation.
@@ -56,9 +57,10 @@ struct Dynamics {
                                              double duration,
                                              double tolerance,
                                              double* z) const {
-    return calls.automatic_flow(system.get(), start, duration, tolerance, z);
+    return kernel.calls.automatic_flow(
+        system.get(), kernel.method.get(), start, duration, tolerance, z);
   }
-  [[nodiscard]] bool has_automatic_flow() const { return calls.automatic_flow != nullptr; }
+  [[nodiscard]] bool has_automatic_flow() const { return kernel.calls.automatic_flow != nullptr; }
   // Advances `count` phase points, one after the other in z, over the plan; on `threads` threads
   // (0: all cores). Those that fail become NaN.
   [[nodiscard]] BatchReport flow_batch(const StepPlan& plan,
@@ -73,14 +75,15 @@ struct Dynamics {
                                            int count,
                                            double* z,
                                            int threads = 0) const {
-    return calls.adaptive_batch(system.get(), start, duration, tolerance, count, z, threads);
+    return kernel.calls.adaptive_batch(
+        system.get(), kernel.method.get(), start, duration, tolerance, count, z, threads);
   }
-  [[nodiscard]] bool has_adaptive_batch() const { return calls.adaptive_batch != nullptr; }
+  [[nodiscard]] bool has_adaptive_batch() const { return kernel.calls.adaptive_batch != nullptr; }
   // The same as flow(), measured and recorded.
   [[nodiscard]] FlowSummary monitored_flow(const StepPlan& plan,
                                            double* z,
                                            const MonitorOptions& options) const {
-    return calls.monitored_flow(system.get(), plan, z, options);
+    return kernel.calls.monitored_flow(system.get(), kernel.method.get(), plan, z, options);
   }
   // H, q' and lambda at (t, q, p).
   PointValues evaluate(
@@ -145,11 +148,6 @@ struct Dynamics {
   }
 
   struct Calls {
-    FlowReport (*flow)(const void*, const StepPlan&, double*);
-    FlowReport (*tangent_flow)(const void*, const StepPlan&, double*, double*);
-    AutomaticFlow (*automatic_flow)(const void*, double, double, double, double*);
-    BatchReport (*adaptive_batch)(const void*, double, double, double, int, double*, int);
-    FlowSummary (*monitored_flow)(const void*, const StepPlan&, double*, const MonitorOptions&);
     PointValues (*evaluate)(const void*, double, const double*, const double*, double*, double*);
     double (*chart)(const void*, const double*);
     double (*momentum)(const void*, double, const double*, double*, const double*, double*);

@@ -1,150 +1,42 @@
 // Dynamics of a scene: the templates of the core behind the function pointers of dynamics.h.
 #pragma once
 
-#include <array>
-#include <cmath>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "carnot/dynamics.h"
-#include "carnot/flow/automatic_flow.h"
-#include "carnot/flow/batch.h"
-#include "carnot/flow/monitor.h"
-#include "carnot/flow/tangent_flow.h"
-#include "carnot/flow/trajectory.h"
-#include "carnot/flow/winding.h"
-#include "carnot/step/gauss.h"
-#include "carnot/step/rattle.h"
-#include "carnot/step/rattle_tangent.h"
+#include "carnot/flow/inlined_kernel.h"
+#include "carnot/flow/make_kernel.h"
+#include "carnot/system/system_calls.h"
 #include "carnot/system/system_of.h"
 #include "carnot/tableau/methods.h"
 #include "carnot/transcription/transcription_calls.h"
 
 namespace carnot {
 
+// Whether holonomic constraints of the scene need RATTLE.
+template <class Scene>
+inline constexpr bool kNeedsRattle = HasHolonomic<Scene> && !IsProduct<Scene>;
+
+// Whether `method` can integrate the scene.
+template <class Scene>
+bool suits(const Method& method) {
+  if (!HasHolonomic<Scene> || method.family == kRattleFamily) return true;
+  const bool keeps_quadratic = method.family == kGaussFamily || method.family == kComposedFamily;
+  return IsProduct<Scene> && keeps_quadratic;
+}
+
+// gauss16, or rattle where it is needed.
+template <class Scene>
+constexpr std::string_view default_method() {
+  return kNeedsRattle<Scene> ? "rattle" : "gauss16";
+}
+
 namespace dynamics_calls {
-
-// What a Dynamics points to. A stepper is made of it for every run.
-template <class Stepper_>
-struct Bound {
-  using Stepper = Stepper_;
-  using System = typename Stepper::System;
-  static constexpr int n = System::kDof;
-  static constexpr int m = System::kAlgebraic;
-  static constexpr int k = System::kMultipliers;
-
-  System system;
-  std::decay_t<decltype(std::declval<const Stepper&>().tableau())> tableau;
-  Vector<double, m> branch = Vector<double, m>::Zero();
-  Winding<n> winding = {};
-
-  [[nodiscard]] Stepper stepper() const {
-    Stepper step(system, tableau);
-    step.start_on(branch);
-    return step;
-  }
-  static const Bound& from(const void* opaque) { return *static_cast<const Bound*>(opaque); }
-};
-
-template <class B>
-State<double, B::n> load(const double* z) {
-  return {view<2 * B::n>(z), Vector<double, 2 * B::n>::Zero()};
-}
-
-template <class B>
-FlowReport flow(const void* opaque, const StepPlan& plan, double* z) {
-  auto stepper = B::from(opaque).stepper();
-  auto state = load<B>(z);
-  auto winding = B::from(opaque).winding;
-  const FlowReport report = carnot::flow(stepper, plan, state, [&](long, const auto&, auto& node) {
-    winding.fold(node);
-    return true;
-  });
-  view<2 * B::n>(z) = winding.unfolded(state).value;
-  return report;
-}
-
-template <class B>
-FlowReport tangent_flow(const void* opaque, const StepPlan& plan, double* z, double* m) {
-  using Square = Matrix<double, 2 * B::n, 2 * B::n>;
-  auto stepper = B::from(opaque).stepper();
-  auto state = load<B>(z);
-  Compensated<Square> tangent{Square::Identity(), Square::Zero()};
-  const FlowReport report = carnot::tangent_flow(
-      stepper, plan, state, tangent, [](long, const auto&, const auto&) { return true; });
-  view<2 * B::n>(z) = state.value;
-  using RowMajor = Eigen::Matrix<double, 2 * B::n, 2 * B::n, Eigen::RowMajor>;
-  Eigen::Map<RowMajor> out(m);
-  out = tangent.value;
-  return report;
-}
-
-template <class B>
-AutomaticFlow automatic_flow(
-    const void* opaque, double start, double duration, double tolerance, double* z) {
-  const auto stepper = B::from(opaque).stepper();
-  auto state = load<B>(z);
-  const AutomaticFlow result = carnot::automatic_flow(stepper, start, duration, tolerance, state);
-  view<2 * B::n>(z) = state.value;
-  return result;
-}
-
-template <class B>
-BatchReport adaptive_batch(const void* opaque,
-                           double start,
-                           double duration,
-                           double tolerance,
-                           int count,
-                           double* z,
-                           int threads) {
-  return carnot::adaptive_batch(
-      B::from(opaque).system, start, duration, tolerance, count, z, threads);
-}
-
-template <class B>
-FlowSummary monitored_flow(const void* opaque,
-                           const StepPlan& plan,
-                           double* z,
-                           const MonitorOptions& options) {
-  constexpr long kProgressEvery = 256;
-  using Stepper = typename B::Stepper;
-  const B& bound = B::from(opaque);
-  auto stepper = bound.stepper();
-  auto state = load<B>(z);
-  Monitor<Stepper> monitor(bound.system, plan.start, stepper, state);
-  Recorder<Stepper> recorder(
-      plan,
-      options.times.empty() ? sample_times(plan, options.samples) : options.times,
-      stepper,
-      state);
-  auto winding = bound.winding;
-  FlowSummary summary;
-  summary.report = carnot::flow(stepper, plan, state, [&](long i, const Stepper& step, auto& node) {
-    monitor(plan.time(i + 1), step, node);
-    if (!std::isfinite(monitor.energy_drift())) return false;
-    recorder(i, step, winding.unfolded(node));
-    winding.fold(node);
-    if (!options.progress || i % kProgressEvery != 0) return true;
-    return options.progress(static_cast<double>(i) / static_cast<double>(plan.count));
-  });
-  view<2 * B::n>(z) = winding.unfolded(state).value;
-  if (!std::isfinite(monitor.energy_drift())) {
-    summary.report.status = FlowStatus::kStepFailed;
-    summary.report.last.status = StepStatus::kRateFailed;
-    summary.report.last.rate = RateStatus::kNotFinite;
-  }
-  summary.action = monitor.action();
-  summary.length = monitor.length();
-  summary.energy_drift = monitor.energy_drift();
-  summary.energy_balance = monitor.energy_balance();
-  summary.constraint_error = monitor.constraint_error();
-  summary.holonomic_error = monitor.holonomic_error();
-  summary.trajectory = recorder.trajectory();
-  return summary;
-}
 
 template <class B>
 PointValues evaluate(const void* opaque,
@@ -247,7 +139,8 @@ std::shared_ptr<const void> branch(
   return other;
 }
 
-template <class B, class Scene>
+// All but the kernel. B is SystemOnBranch.
+template <class Scene, class B>
 Dynamics bind(const Scene& scene, const Method& method, B bound) {
   using System = typename B::System;
   Dynamics dynamics;
@@ -258,13 +151,7 @@ Dynamics bind(const Scene& scene, const Method& method, B bound) {
   dynamics.order = method.order;
   dynamics.symplectic = method.symplectic;
   dynamics.info = describe_scene(scene);
-  std::array<double, B::n> periods{};
-  for (int i = 0; i < B::n; ++i) periods[i] = dynamics.info.configuration[i].period;
-  bound.winding = Winding<B::n>(periods);
   dynamics.system = std::make_shared<const B>(std::move(bound));
-  dynamics.calls.flow = flow<B>;
-  dynamics.calls.tangent_flow = tangent_flow<B>;
-  dynamics.calls.monitored_flow = monitored_flow<B>;
   dynamics.calls.evaluate = evaluate<B>;
   dynamics.calls.momentum = momentum<B>;
   if constexpr (HasChart<Scene>) dynamics.calls.chart = chart<B>;
@@ -286,79 +173,55 @@ Dynamics bind(const Scene& scene, const Method& method, B bound) {
   return dynamics;
 }
 
-template <class Scene>
-Dynamics bind_rattle(const Scene& scene, const Method& method) {
-  auto system = make_system(scene);
-  using B = Bound<Rattle<decltype(system)>>;
-  return bind(scene, method, B{std::move(system), make_tableau(method)});
+inline std::vector<double> periods_of(const SceneInfo& info) {
+  std::vector<double> periods;
+  for (const Coordinate& coordinate : info.configuration) periods.push_back(coordinate.period);
+  return periods;
 }
 
+// A method of methods() that suits the scene. Throws std::invalid_argument.
 template <class Scene>
-Dynamics bind_runge_kutta(const Scene& scene, const Method& method) {
-  auto system = make_system(scene);
-  using System = decltype(system);
-  const Tableau<double> tableau = make_tableau(method);
-  // The default method with all that the compiler can do for it; one kernel for the others.
-  constexpr int kFixed = 8;
-  if (tableau.coupling == Coupling::kFull && !tableau.partitioned && tableau.stages() == kFixed) {
-    using Stepper = RungeKutta<System, kFixed>;
-    using B = Bound<Stepper>;
-    Dynamics dynamics = bind(scene, method, B{std::move(system), fixed_stages<kFixed>(tableau)});
-    dynamics.calls.automatic_flow = automatic_flow<B>;
-    if constexpr (PacksRates<System>) dynamics.calls.adaptive_batch = adaptive_batch<B>;
-    return dynamics;
-  }
-  using B = Bound<RungeKutta<System>>;
-  Dynamics dynamics = bind(scene, method, B{std::move(system), tableau});
-  const bool gauss = tableau.coupling == Coupling::kFull && !tableau.partitioned &&
-                     tableau.order == 2 * tableau.stages();
-  if (gauss && tableau.stages() >= kLeastSampled) {
-    dynamics.calls.automatic_flow = automatic_flow<B>;
-  }
-  return dynamics;
-}
-
-}  // namespace dynamics_calls
-
-// Whether holonomic constraints of the scene need RATTLE.
-template <class Scene>
-inline constexpr bool kNeedsRattle = HasHolonomic<Scene> && !IsProduct<Scene>;
-
-// Whether `method` can integrate the scene.
-template <class Scene>
-bool suits(const Method& method) {
-  if (!HasHolonomic<Scene> || method.family == kRattleFamily) return true;
-  const bool keeps_quadratic = method.family == kGaussFamily || method.family == kComposedFamily;
-  return IsProduct<Scene> && keeps_quadratic;
-}
-
-// gauss16, or rattle where it is needed.
-template <class Scene>
-constexpr std::string_view default_method() {
-  return kNeedsRattle<Scene> ? "rattle" : "gauss16";
-}
-
-// A Dynamics of the scene with a method of methods.h. Throws std::invalid_argument when a parameter
-// of the scene is out of its range, or there is no such method for it.
-template <class Scene>
-Dynamics make_dynamics(const Scene& scene, std::string_view method_name = default_method<Scene>()) {
-  using namespace dynamics_calls;
+const Method& method_for(const Scene& scene, std::string_view name) {
   validate(scene);
-  const Method* const method = find_method(method_name);
+  const Method* const method = find_method(name);
   if (method == nullptr || !suits<Scene>(*method)) {
-    throw std::invalid_argument("method " + std::string(method_name) +
+    throw std::invalid_argument("method " + std::string(name) +
                                 (method == nullptr ? ": there is none of that name"
                                                    : ": it does not keep the holonomic "
                                                      "constraints of this scene"));
   }
-  if constexpr (kNeedsRattle<Scene>) {
-    return bind_rattle(scene, *method);
-  } else if constexpr (HasHolonomic<Scene>) {
-    return method->family == kRattleFamily ? bind_rattle(scene, *method)
-                                           : bind_runge_kutta(scene, *method);
-  } else {
-    return bind_runge_kutta(scene, *method);
+  return *method;
+}
+
+}  // namespace dynamics_calls
+
+// A Dynamics of the scene with a method of methods.h. Throws std::invalid_argument when a parameter
+// of the scene is out of its range, or there is no such method for it.
+//
+// The method runs in a kernel that was compiled with the library, and reaches the scene through
+// function pointers; so a scene compiles in seconds. make_inlined_dynamics.h makes a kernel that
+// knows the scene. RATTLE, and more than kMostCompiled coordinates, have such a kernel always.
+template <class Scene>
+Dynamics make_dynamics(const Scene& scene, std::string_view name = default_method<Scene>()) {
+  using namespace dynamics_calls;
+  using System = decltype(make_system(scene));
+  const Method& method = method_for(scene, name);
+  Dynamics dynamics = bind(scene, method, SystemOnBranch<System>{make_system(scene)});
+  const std::vector<double> periods = periods_of(dynamics.info);
+  if constexpr (HasHolonomic<Scene>) {
+    if (method.family == kRattleFamily) {
+      dynamics.kernel = make_rattle_kernel<System>(method, periods);
+      return dynamics;
+    }
   }
+  if constexpr (!kNeedsRattle<Scene>) {
+    if constexpr (System::kDof <= kMostCompiled && kFitsKernel<System>) {
+      dynamics.kernel = make_kernel(method, periods, functions_of<System>());
+    } else {
+      dynamics.kernel = make_inlined_kernel<System>(method, periods);
+    }
+  }
+  return dynamics;
 }
 
 }  // namespace carnot

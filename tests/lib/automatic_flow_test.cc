@@ -7,8 +7,11 @@
 #include <cmath>
 #include <limits>
 
+#include "carnot/make_dynamics.h"
+#include "carnot/scenes/unicycle.h"
+#include "carnot/scenes/vehicle.h"
+#include "carnot/scenes/vehicle_cosine.h"
 #include "carnot/step/gauss.h"
-#include "testing/compiled_dynamics.h"
 #include "testing/runs.h"
 
 namespace carnot::automatic_flow_test {

@@ -7,7 +7,10 @@
 #include <limits>
 #include <vector>
 
-#include "testing/compiled_dynamics.h"
+#include "carnot/make_dynamics.h"
+#include "carnot/scenes/unicycle.h"
+#include "carnot/scenes/vehicle.h"
+#include "carnot/scenes/vehicle_cosine.h"
 #include "testing/order.h"
 #include "testing/runs.h"
 

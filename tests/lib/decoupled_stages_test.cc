@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "carnot/tableau/make_tableau.h"
 #include "carnot/tableau/methods.h"
 #include "testing/random_points.h"
 

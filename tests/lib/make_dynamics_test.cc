@@ -1,4 +1,6 @@
 // The calls of a Dynamics against the templates behind them.
+#include "carnot/make_dynamics.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,8 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "carnot/scenes/unicycle.h"
+#include "carnot/scenes/vehicle.h"
+#include "carnot/scenes/vehicle_cosine.h"
 #include "carnot/step/gauss.h"
-#include "testing/compiled_dynamics.h"
 #include "testing/runs.h"
 
 namespace carnot::make_dynamics_test {

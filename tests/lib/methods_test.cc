@@ -12,6 +12,8 @@
 #include <set>
 #include <string>
 
+#include "carnot/tableau/make_tableau.h"
+#include "carnot/tableau/tableau_laws.h"
 #include "testing/order_conditions.h"
 #include "testing/rooted_trees.h"
 

@@ -7,8 +7,10 @@
 #include <limits>
 #include <numbers>
 
+#include "carnot/make_dynamics.h"
+#include "carnot/scenes/unicycle.h"
 #include "carnot/scenes/vehicle.h"
-#include "testing/compiled_dynamics.h"
+#include "carnot/scenes/vehicle_cosine.h"
 
 namespace carnot::winding_test {
 namespace {

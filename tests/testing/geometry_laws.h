@@ -10,6 +10,7 @@
 
 #include "carnot/flow/tangent_flow.h"
 #include "carnot/tableau/methods.h"
+#include "carnot/tableau/tableau_laws.h"
 #include "testing/runs.h"
 
 namespace carnot::test {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "carnot/step/runge_kutta.h"
+#include "carnot/tableau/make_tableau.h"
 #include "carnot/tableau/methods.h"
 #include "testing/runs.h"
 

@@ -8,6 +8,7 @@
 
 #include "carnot/flow/tangent_flow.h"
 #include "carnot/step/gauss.h"
+#include "carnot/tableau/make_tableau.h"
 #include "carnot/tableau/methods.h"
 #include "testing/allocation_counter.h"
 #include "testing/runs.h"

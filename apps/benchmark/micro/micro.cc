@@ -154,16 +154,16 @@ void iteration_latency(benchmark::State& state, const BenchmarkTrajectory& traje
   alignas(64) std::array<double, System::kAlgebraic * 8> y;
   for (int i = 0; i < 8; ++i) weights[i] = kStep * tableau.omega[i];
   for (auto _ : state) {
-    const Sweep sweep = packed_sweep<System, 8>(system,
-                                                time.data(),
-                                                tableau.mu.data(),
-                                                weights.data(),
-                                                start.data(),
-                                                compensation.data(),
-                                                rows.z.data(),
-                                                y.data(),
-                                                rows.f.data(),
-                                                nullptr);
+    const Sweep sweep = packed_sweep<8>(system,
+                                        {time.data(),
+                                         tableau.mu.data(),
+                                         weights.data(),
+                                         start.data(),
+                                         compensation.data(),
+                                         rows.z.data(),
+                                         y.data(),
+                                         rows.f.data(),
+                                         nullptr});
     if (!sweep.ok) state.SkipWithError("no rate");
   }
   benchmark::DoNotOptimize(rows.f.data());

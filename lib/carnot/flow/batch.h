@@ -12,6 +12,7 @@
 #include "carnot/flow/reports.h"
 #include "carnot/numerics/parallel.h"
 #include "carnot/system/phase_space.h"
+#include "carnot/system/system_functions.h"
 
 namespace carnot {
 
@@ -42,20 +43,20 @@ BatchReport adaptive_batch(const System& system,
                            int count,
                            double* z,
                            int threads) {
-  constexpr int kLanes = kPackInFlight;
+  constexpr int kLanes = IsErased<System> ? kErasedLanes : kPackInFlight;
+  constexpr int kFewer = IsErased<System> ? kErasedLanes : kPackInFlight / 2;
   constexpr int size = 2 * System::kDof;
   using Rows = std::array<double, size * kLanes>;
   const auto advance = [&](int first, int lanes, BatchReport& report) {
     alignas(64) Rows rows;
-    const int width = lanes > kLanes / 2 ? kLanes : kLanes / 2;
+    const int width = lanes > kFewer ? kLanes : kFewer;
     for (int l = 0; l < width; ++l) {
       const double* const from = z + (first + std::min(l, lanes - 1)) * size;
       for (int k = 0; k < size; ++k) rows[k * width + l] = from[k];
     }
     const AdaptiveReport run =
-        width == kLanes
-            ? dop853_adaptive<kLanes>(system, start, duration, tolerance, rows.data())
-            : dop853_adaptive<kLanes / 2>(system, start, duration, tolerance, rows.data());
+        width == kLanes ? dop853_adaptive<kLanes>(system, start, duration, tolerance, rows.data())
+                        : dop853_adaptive<kFewer>(system, start, duration, tolerance, rows.data());
     report.evaluations += run.evaluations * lanes;
     if (!run.completed && lanes > 1) return false;
     for (int l = 0; l < lanes; ++l) {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "carnot/step/runge_kutta.h"
-#include "carnot/system/holonomic.h"
+#include "carnot/system/measures.h"
 
 namespace carnot {
 
@@ -37,11 +37,11 @@ class Monitor {
       constraint_error_ = std::max(constraint_error_, relative_constraint(q, v));
       if (weight == T(0)) continue;
       const T time = step.stage_time(i);
-      const auto y = step.algebraic(i);
+      const Vector<T, System::kAlgebraic> y = step.algebraic(i);
       action_.add(weight * (p.dot(v) - system_.hamiltonian(time, q, p, y)));
       // Substeps of a composition may go backwards: b_i < 0.
       length_.add(std::abs(h) * step.tableau().b[i] * system_.speed(q, v));
-      if constexpr (!System::kAutonomous) power_.add(weight * explicit_rate(time, q, p, y));
+      if (!is_autonomous(system_)) power_.add(weight * explicit_rate(system_, time, q, p, y));
     }
     y_ = step.branch();
     const T change = node(t, z) - initial_;
@@ -74,31 +74,12 @@ class Monitor {
       return std::numeric_limits<T>::quiet_NaN();
     }
     constraint_error_ = std::max(constraint_error_, relative_constraint(q, rate.q_dot));
-    if constexpr (HolonomicSystem<System>) {
-      const auto& scene = system_.scene();
-      const T size = std::max(T(1), rate.q_dot.cwiseAbs().maxCoeff());
-      const T hidden = hidden_residual(scene, q, rate.q_dot) / size;
-      holonomic_error_ = std::max({holonomic_error_, holonomic_residual(scene, q), hidden});
-    }
+    holonomic_error_ = std::max(holonomic_error_, carnot::holonomic_error(system_, q, rate.q_dot));
     return system_.hamiltonian(t, q, p, y_);
   }
 
-  // H_t at fixed q, p, y: the rate of change of H along the exact flow.
-  T explicit_rate(const T& t,
-                  const Vector<T, n>& q,
-                  const Vector<T, n>& p,
-                  const Vector<T, System::kAlgebraic>& y) const {
-    using J = Jet<T, 1>;
-    return system_.hamiltonian(J(t, 0), unseeded<J>(q), unseeded<J>(p), unseeded<J>(y)).v[0];
-  }
-
   T relative_constraint(const Vector<T, n>& q, const Vector<T, n>& v) const {
-    if constexpr (System::kMultipliers == 0) {
-      return T(0);
-    } else {
-      const Vector<T, System::kMultipliers> g = system_.constraint(q, v);
-      return g.norm() / std::max(T(1), v.cwiseAbs().maxCoeff());
-    }
+    return constraint_norm(system_, q, v) / std::max(T(1), v.cwiseAbs().maxCoeff());
   }
 
   const System& system_;

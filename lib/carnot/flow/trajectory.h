@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "carnot/flow/flow.h"
+#include "carnot/system/measures.h"
 
 namespace carnot {
 
@@ -74,7 +75,7 @@ class Recorder {
     trajectory_.t.push_back(t);
     trajectory_.q.emplace_back(q.data(), q.data() + n);
     trajectory_.p.emplace_back(p.data(), p.data() + n);
-    trajectory_.lambda.emplace_back(lambda.data(), lambda.data() + k);
+    trajectory_.lambda.emplace_back(lambda.data(), lambda.data() + multiplier_count(system));
     trajectory_.hamiltonian.push_back(ok ? system.hamiltonian(t, q, p, y)
                                          : std::numeric_limits<double>::quiet_NaN());
   }

@@ -5,7 +5,7 @@
 
 #include "carnot/numerics/linear_algebra.h"
 #include "carnot/numerics/pack.h"
-#include "carnot/system/index_one_system.h"
+#include "carnot/system/packed_sweep.h"
 
 namespace carnot {
 
@@ -19,21 +19,6 @@ using StageRows =
                   rows,
                   most>;
 
-// sum + A x for an s x s matrix with its columns one after the other. Two chains of additions, for
-// the processor to overlap.
-template <int s>
-[[gnu::always_inline]] inline Pack<s> combination(const double* columns,
-                                                  const double* x,
-                                                  const Pack<s>& sum) {
-  Pack<s> even = sum + Pack<s>::load(columns) * Pack<s>(x[0]);
-  Pack<s> odd = Pack<s>::load(columns + s) * Pack<s>(x[1]);
-  for (int j = 2; j < s; j += 2) {
-    even += Pack<s>::load(columns + j * s) * Pack<s>(x[j]);
-    odd += Pack<s>::load(columns + (j + 1) * s) * Pack<s>(x[j + 1]);
-  }
-  return even + odd;
-}
-
 // Row k of `increments` <- A row k: the first guess from the last step.
 template <int size, int s>
 [[gnu::flatten, gnu::noinline]] void packed_extrapolation(const double* columns,
@@ -41,53 +26,6 @@ template <int size, int s>
   for (int k = 0; k < size; ++k) {
     combination<s>(columns, increments + k * s, Pack<s>(0)).store(increments + k * s);
   }
-}
-
-// What one iteration did.
-struct Sweep {
-  bool ok = false;    // else some lane fails: ask rate() one by one which and why
-  double change = 0;  // the largest of an entry of the stages
-};
-
-// One iteration on all stages: U from the increments L, row k <- value_k + (compensation_k + mu
-// L_k), then L = weights f(U), and y. The largest change of each row comes in `change`, unless it
-// is null.
-template <class System, int s>
-[[gnu::flatten, gnu::noinline]] Sweep packed_sweep(const System& system,
-                                                   const double* time,
-                                                   const double* mu,
-                                                   const double* weights,
-                                                   const double* value,
-                                                   const double* compensation,
-                                                   double* stages,
-                                                   double* algebraic,
-                                                   double* increments,
-                                                   double* change) {
-  constexpr int n = System::kDof;
-  using P = Pack<s>;
-  Vector<P, n> q;
-  Vector<P, n> p;
-  P most(0);
-  for (int k = 0; k < 2 * n; ++k) {
-    const P u = P(value[k]) + combination<s>(mu, increments + k * s, P(compensation[k]));
-    const P moved = abs(u - P::load(stages + k * s));
-    u.store(stages + k * s);
-    if (change != nullptr) change[k] = largest(moved);
-    most = max(most, moved);
-    (k < n ? q[k] : p[k - n]) = u;
-  }
-  Vector<P, System::kAlgebraic> y;
-  Rate<P, n> rate;
-  Sweep sweep{false, largest(most)};
-  if (system.rate(P::load(time), q, p, y, rate) != RateStatus::kOk) return sweep;
-  const P weight = P::load(weights);
-  for (int k = 0; k < n; ++k) {
-    (weight * rate.q_dot[k]).store(increments + k * s);
-    (weight * rate.p_dot[k]).store(increments + (n + k) * s);
-  }
-  for (int k = 0; k < System::kAlgebraic; ++k) y[k].store(algebraic + k * s);
-  sweep.ok = true;
-  return sweep;
 }
 
 // The largest entry of each of the s combinations A row k, over the rows k.

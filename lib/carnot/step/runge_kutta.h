@@ -273,16 +273,16 @@ class RungeKutta {
   // rate fails; `change` is that of each component, where it is asked for.
   T sweep(const Block& block, Stages& next, Point* change, StepReport& report) {
     if constexpr (kRows) {
-      const Sweep sweep = packed_sweep<System, s>(system_,
-                                                  times_.data(),
-                                                  tableau_.mu.data(),
-                                                  weights_.data(),
-                                                  block.z.value.data(),
-                                                  block.z.compensation.data(),
-                                                  stages_.data(),
-                                                  algebraic_.data(),
-                                                  increments_.data(),
-                                                  change == nullptr ? nullptr : change->data());
+      const SweepData data{times_.data(),
+                           tableau_.mu.data(),
+                           weights_.data(),
+                           block.z.value.data(),
+                           block.z.compensation.data(),
+                           stages_.data(),
+                           algebraic_.data(),
+                           increments_.data(),
+                           change == nullptr ? nullptr : change->data()};
+      const Sweep sweep = packed_sweep<s>(system_, data);
       report.evaluations += kLanes;
       if (sweep.ok || (with_newton_ && evaluate_all(block, report))) return sweep.change;
       if (!with_newton_) (void)fail(RateStatus::kNotFinite, report);

@@ -57,6 +57,10 @@ concept IndexOneSystem = requires(const S& system,
   { S::kAutonomous } -> std::convertible_to<bool>;
 };
 
+// A system that is reached through function pointers (erased_system.h); its sizes are bounds.
+template <class S>
+concept IsErased = S::kErased;
+
 // A scene may say `kTimeDependent = true`: H is then not conserved, dH/dt = H_t.
 template <class S>
 concept IsTimeDependent = S::kTimeDependent;

@@ -20,23 +20,27 @@ concept PacksRates = System::kPacks;
 template <int W, class System, class Lane = typename pack_lane::Widest<W>::type>
 [[gnu::flatten, gnu::noinline]] bool packed_rate(
     const System& system, const double* t, const double* z, double* y, double* z_dot) {
-  constexpr int n = System::kDof;
-  using P = Pack<W, Lane>;
-  Vector<P, n> q;
-  Vector<P, n> p;
-  for (int i = 0; i < n; ++i) {
-    q[i] = P::load(z + i * W);
-    p[i] = P::load(z + (n + i) * W);
+  if constexpr (IsErased<System>) {
+    return system.template packed_rate<W>(t, z, y, z_dot);
+  } else {
+    constexpr int n = System::kDof;
+    using P = Pack<W, Lane>;
+    Vector<P, n> q;
+    Vector<P, n> p;
+    for (int i = 0; i < n; ++i) {
+      q[i] = P::load(z + i * W);
+      p[i] = P::load(z + (n + i) * W);
+    }
+    Vector<P, System::kAlgebraic> algebraic;
+    Rate<P, n> rate;
+    if (system.rate(P::load(t), q, p, algebraic, rate) != RateStatus::kOk) return false;
+    for (int i = 0; i < n; ++i) {
+      rate.q_dot[i].store(z_dot + i * W);
+      rate.p_dot[i].store(z_dot + (n + i) * W);
+    }
+    for (int i = 0; i < System::kAlgebraic; ++i) algebraic[i].store(y + i * W);
+    return true;
   }
-  Vector<P, System::kAlgebraic> algebraic;
-  Rate<P, n> rate;
-  if (system.rate(P::load(t), q, p, algebraic, rate) != RateStatus::kOk) return false;
-  for (int i = 0; i < n; ++i) {
-    rate.q_dot[i].store(z_dot + i * W);
-    rate.p_dot[i].store(z_dot + (n + i) * W);
-  }
-  for (int i = 0; i < System::kAlgebraic; ++i) algebraic[i].store(y + i * W);
-  return true;
 }
 
 // d(z_dot)/dz at W points side by side: entry (r, c) of all is row 2n r + c of `jacobian`, times
@@ -47,25 +51,30 @@ template <int W, class System>
                                                      const double* z,
                                                      const double* weights,
                                                      double* jacobian) {
-  constexpr int n = System::kDof;
-  using P = Pack<W>;
-  using J = Jet<P, 2 * n>;
-  Vector<P, 2 * n> point;
-  for (int i = 0; i < 2 * n; ++i) point[i] = P::load(z + i * W);
-  const Vector<J, 2 * n> seeds = seeded(point);
-  const Vector<J, n> q = seeds.template head<n>();
-  const Vector<J, n> p = seeds.template tail<n>();
-  Vector<J, System::kAlgebraic> y;
-  Rate<J, n> rate;
-  if (system.rate(J(P::load(t)), q, p, y, rate) != RateStatus::kOk) return false;
-  const P weight = P::load(weights);
-  for (int r = 0; r < n; ++r) {
-    for (int c = 0; c < 2 * n; ++c) {
-      (weight * rate.q_dot[r].v[c]).store(jacobian + (2 * n * r + c) * W);
-      (weight * rate.p_dot[r].v[c]).store(jacobian + (2 * n * (n + r) + c) * W);
+  if constexpr (IsErased<System>) {
+    static_assert(W == 8);
+    return system.packed_jacobian(t, z, weights, jacobian);
+  } else {
+    constexpr int n = System::kDof;
+    using P = Pack<W>;
+    using J = Jet<P, 2 * n>;
+    Vector<P, 2 * n> point;
+    for (int i = 0; i < 2 * n; ++i) point[i] = P::load(z + i * W);
+    const Vector<J, 2 * n> seeds = seeded(point);
+    const Vector<J, n> q = seeds.template head<n>();
+    const Vector<J, n> p = seeds.template tail<n>();
+    Vector<J, System::kAlgebraic> y;
+    Rate<J, n> rate;
+    if (system.rate(J(P::load(t)), q, p, y, rate) != RateStatus::kOk) return false;
+    const P weight = P::load(weights);
+    for (int r = 0; r < n; ++r) {
+      for (int c = 0; c < 2 * n; ++c) {
+        (weight * rate.q_dot[r].v[c]).store(jacobian + (2 * n * r + c) * W);
+        (weight * rate.p_dot[r].v[c]).store(jacobian + (2 * n * (n + r) + c) * W);
+      }
     }
+    return true;
   }
-  return true;
 }
 
 // The same for columns first, ..., first + count - 1 of matrices with a column for each point, up
@@ -88,6 +97,9 @@ bool columns_in_pack(const System& system,
     const int column = std::min(l, count - 1);
     time[l] = t[column];
     for (int k = 0; k < size; ++k) points[k * W + l] = z(k, first + column);
+    if constexpr (IsErased<System>) {  // it may iterate, from the y of each point
+      for (int k = 0; k < m; ++k) solutions[k * W + l] = y(k, first + column);
+    }
   }
   if (!packed_rate<W>(system, time.data(), points.data(), solutions.data(), rates.data())) {
     return false;
@@ -108,8 +120,10 @@ bool packed_columns(const System& system,
                     const Points& z,
                     Algebraic& y,
                     Points& z_dot) {
-  return count > 4 ? columns_in_pack<8>(system, t, first, count, z, y, z_dot)
-                   : columns_in_pack<4>(system, t, first, count, z, y, z_dot);
+  if constexpr (!IsErased<System>) {
+    if (count <= 4) return columns_in_pack<4>(system, t, first, count, z, y, z_dot);
+  }
+  return columns_in_pack<8>(system, t, first, count, z, y, z_dot);
 }
 
 }  // namespace carnot

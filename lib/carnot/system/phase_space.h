@@ -26,17 +26,21 @@ template <class System, class T>
                                         const Vector<T, 2 * System::kDof>& z,
                                         Vector<T, System::kAlgebraic>& y,
                                         Vector<T, 2 * System::kDof>& z_dot) {
-  constexpr int n = System::kDof;
-  Vector<T, n> q;
-  Vector<T, n> p;
-  for (int i = 0; i < n; ++i) q[i] = z[i];
-  for (int i = 0; i < n; ++i) p[i] = z[n + i];
-  Rate<T, n> rate;
-  const RateStatus status = system.rate(t, q, p, y, rate);
-  if (status != RateStatus::kOk) return status;
-  for (int i = 0; i < n; ++i) z_dot[i] = rate.q_dot[i];
-  for (int i = 0; i < n; ++i) z_dot[n + i] = rate.p_dot[i];
-  return status;
+  if constexpr (IsErased<System>) {
+    return system.phase_rate(t, z, y, z_dot);
+  } else {
+    constexpr int n = System::kDof;
+    Vector<T, n> q;
+    Vector<T, n> p;
+    for (int i = 0; i < n; ++i) q[i] = z[i];
+    for (int i = 0; i < n; ++i) p[i] = z[n + i];
+    Rate<T, n> rate;
+    const RateStatus status = system.rate(t, q, p, y, rate);
+    if (status != RateStatus::kOk) return status;
+    for (int i = 0; i < n; ++i) z_dot[i] = rate.q_dot[i];
+    for (int i = 0; i < n; ++i) z_dot[n + i] = rate.p_dot[i];
+    return status;
+  }
 }
 
 // d(dz/dt)/dz, exact: the rate on Jets with 2n directions. y is the solution at z.
@@ -46,14 +50,18 @@ RateStatus phase_jacobian(const System& system,
                           const Vector<T, 2 * System::kDof>& z,
                           const Vector<T, System::kAlgebraic>& y,
                           Matrix<T, 2 * System::kDof, 2 * System::kDof>& jacobian) {
-  constexpr int m = 2 * System::kDof;
-  using J = Jet<T, m>;
-  Vector<J, m> rate;
-  Vector<J, System::kAlgebraic> warm = unseeded<J>(y);
-  const RateStatus status = phase_rate(system, J(t), seeded(z), warm, rate);
-  if (status != RateStatus::kOk) return status;
-  jacobian = tangents(rate);
-  return status;
+  if constexpr (IsErased<System>) {
+    return system.phase_jacobian(t, z, y, jacobian);
+  } else {
+    constexpr int m = 2 * System::kDof;
+    using J = Jet<T, m>;
+    Vector<J, m> rate;
+    Vector<J, System::kAlgebraic> warm = unseeded<J>(y);
+    const RateStatus status = phase_rate(system, J(t), seeded(z), warm, rate);
+    if (status != RateStatus::kOk) return status;
+    jacobian = tangents(rate);
+    return status;
+  }
 }
 
 }  // namespace carnot

@@ -1,21 +1,13 @@
 // The methods by name, with what is claimed of them; their tableaus hold the claims to account.
 //
 // The number in a name is the ORDER. "symplectic" and "symmetric" are declared here and can be
-// measured: is_symplectic(), symplecticity_defect() and symmetry_defect() of the tableau.
+// measured: is_symplectic(), symplecticity_defect() and symmetry_defect() of the tableau
+// (tableau_laws.h).
 #pragma once
 
-#include <algorithm>
-#include <cassert>
-#include <cmath>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include "carnot/tableau/composition_tableau.h"
-#include "carnot/tableau/dop853_tableau.h"
-#include "carnot/tableau/gauss_tableau.h"
-#include "carnot/tableau/lobatto_tableau.h"
-#include "carnot/tableau/radau_tableau.h"
 
 namespace carnot {
 
@@ -36,17 +28,6 @@ inline constexpr const char* kRadauFamily = "Radau IIA";
 inline constexpr const char* kDop853Family = "Dormand-Prince";
 // Composed steps of a holonomic system: each stage is a RATTLE step, b_i h its length.
 inline constexpr const char* kRattleFamily = "RATTLE";
-
-// The tableau of a method of methods().
-template <class T = double>
-Tableau<T> make_tableau(const Method& method) {
-  if (method.family == kGaussFamily) return gauss_tableau<T>(method.stages);
-  if (method.family == kLobattoFamily) return lobatto_tableau<T>(method.stages);
-  if (method.family == kRadauFamily) return radau_tableau<T>(method.stages);
-  if (method.family == kDop853Family) return dop853_tableau<T>();
-  assert(method.family == kComposedFamily || method.family == kRattleFamily);
-  return composition_tableau<T>(method.order);
-}
 
 // All of them, in the order of a list.
 inline const std::vector<Method>& methods() {
@@ -87,41 +68,6 @@ inline const Method* find_method(std::string_view name) {
     if (method.name == name) return &method;
   }
   return nullptr;
-}
-
-// max |b_i a^_ij + b_j a_ji - b_i b_j|, a^ of p: zero for a symplectic method.
-template <class T, int s>
-T symplecticity_defect(const Tableau<T, s>& tableau) {
-  using std::abs;
-  T defect(0);
-  for (int i = 0; i < tableau.stages(); ++i) {
-    for (int j = 0; j < tableau.stages(); ++j) {
-      const T sum = tableau.b[i] * tableau.momentum_mu(i, j) * tableau.omega[j] +
-                    tableau.b[j] * tableau.mu(j, i) * tableau.omega[i];
-      defect = std::max(defect, T(abs(sum - tableau.b[i] * tableau.b[j])));
-    }
-  }
-  return defect;
-}
-
-// max |b_i - b_i'| and |a_ij + a_i'j' - b_j| with i' = s + 1 - i: zero where the step of -h undoes
-// the step of h with the same stages in reverse order.
-template <class T, int s>
-T symmetry_defect(const Tableau<T, s>& tableau) {
-  using std::abs;
-  const int last = tableau.stages() - 1;
-  T defect(0);
-  for (int i = 0; i <= last; ++i) {
-    defect = std::max(defect, T(abs(tableau.b[i] - tableau.b[last - i])));
-    for (int j = 0; j <= last; ++j) {
-      const T q = tableau.mu(i, j) * tableau.omega[j] +
-                  tableau.mu(last - i, last - j) * tableau.omega[last - j];
-      const T p = tableau.momentum_mu(i, j) * tableau.omega[j] +
-                  tableau.momentum_mu(last - i, last - j) * tableau.omega[last - j];
-      defect = std::max(defect, std::max(T(abs(q - tableau.b[j])), T(abs(p - tableau.b[j]))));
-    }
-  }
-  return defect;
 }
 
 }  // namespace carnot

@@ -1,0 +1,47 @@
+// The runs of a kernel behind function pointers, on plain numbers.
+//
+// `system` is what the functions of the scene take (system_functions.h), `method` is the kernel's
+// own. z = (q, p) has 2n entries.
+#pragma once
+
+#include <memory>
+
+#include "carnot/flow/reports.h"
+
+namespace carnot {
+
+struct FlowCalls {
+  FlowReport (*flow)(const void* system, const void* method, const StepPlan&, double* z) = nullptr;
+  // m: the derivative of the end by the start, row-major 2n x 2n.
+  FlowReport (*tangent_flow)(
+      const void* system, const void* method, const StepPlan&, double* z, double* m) = nullptr;
+  FlowSummary (*monitored_flow)(const void* system,
+                                const void* method,
+                                const StepPlan&,
+                                double* z,
+                                const MonitorOptions&) = nullptr;
+  // Null where the method is no Gauss method of kLeastSampled stages.
+  AutomaticFlow (*automatic_flow)(const void* system,
+                                  const void* method,
+                                  double start,
+                                  double duration,
+                                  double tolerance,
+                                  double* z) = nullptr;
+  // Null where the rates do not run side by side.
+  BatchReport (*adaptive_batch)(const void* system,
+                                const void* method,
+                                double start,
+                                double duration,
+                                double tolerance,
+                                int count,
+                                double* z,
+                                int threads) = nullptr;
+};
+
+// Calls, and the `method` that they take.
+struct Kernel {
+  std::shared_ptr<const void> method;
+  FlowCalls calls;
+};
+
+}  // namespace carnot

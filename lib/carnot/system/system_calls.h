@@ -1,0 +1,218 @@
+// The functions of a system behind the pointers of system_functions.h: all that a scene compiles of
+// its own for the kernels.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <type_traits>
+#include <utility>
+
+#include "carnot/numerics/gradient.h"
+#include "carnot/system/measures.h"
+#include "carnot/system/packed_rate.h"
+#include "carnot/system/packed_sweep.h"
+#include "carnot/system/phase_space.h"
+#include "carnot/system/system_functions.h"
+
+namespace carnot {
+
+// A system, and the solution y of H_y = 0 that its runs begin with; zero leaves the choice to the
+// system. This is what the pointers point to.
+template <class System_>
+struct SystemOnBranch {
+  using System = System_;
+  static constexpr int n = System::kDof;
+  static constexpr int m = System::kAlgebraic;
+  static constexpr int k = System::kMultipliers;
+
+  System system;
+  Vector<double, m> branch = Vector<double, m>::Zero();
+
+  static const SystemOnBranch& from(const void* opaque) {
+    return *static_cast<const SystemOnBranch*>(opaque);
+  }
+};
+
+// Whether the kernels have room for its algebraic variables.
+template <class System>
+inline constexpr bool kFitsKernel =
+    System::kAlgebraic <= kMostAlgebraic* System::kDof&& System::kMultipliers <=
+    kMostAlgebraic* System::kDof;
+
+namespace system_calls {
+
+template <class System>
+const System& system_of(const void* opaque) {
+  return SystemOnBranch<System>::from(opaque).system;
+}
+
+template <class System>
+RateStatus rate(const void* opaque, double t, const double* z, double* y, double* z_dot) {
+  constexpr int n = System::kDof;
+  constexpr int m = System::kAlgebraic;
+  const Vector<double, n> q = view<n>(z);
+  const Vector<double, n> p = view<n>(z + n);
+  Vector<double, m> algebraic = view<m>(y);
+  Rate<double, n> out;
+  const RateStatus status = system_of<System>(opaque).rate(t, q, p, algebraic, out);
+  if (status != RateStatus::kOk) return status;
+  view<m>(y) = algebraic;
+  view<n>(z_dot) = out.q_dot;
+  view<n>(z_dot + n) = out.p_dot;
+  return status;
+}
+
+template <class System>
+RateStatus jacobian(const void* opaque, double t, const double* z, const double* y, double* out) {
+  constexpr int size = 2 * System::kDof;
+  constexpr int m = System::kAlgebraic;
+  Matrix<double, size, size> a;
+  const Vector<double, size> at = view<size>(z);
+  const Vector<double, m> algebraic = view<m>(y);
+  const RateStatus status = phase_jacobian(system_of<System>(opaque), t, at, algebraic, a);
+  if (status == RateStatus::kOk) view<size * size>(out) = view<size * size>(a.data());
+  return status;
+}
+
+// Side by side in a pack, or one after the other where the formulas branch on values or iterate.
+template <class System>
+bool rates(const void* opaque, const double* t, const double* z, double* y, double* z_dot) {
+  if constexpr (PacksRates<System>) {
+    return packed_rate<kErasedLanes>(system_of<System>(opaque), t, z, y, z_dot);
+  } else {
+    constexpr int size = 2 * System::kDof;
+    constexpr int m = System::kAlgebraic;
+    constexpr int s = kErasedLanes;
+    std::array<double, size> point;
+    std::array<double, size> out;
+    std::array<double, std::max(m, 1)> algebraic;
+    for (int l = 0; l < s; ++l) {
+      for (int k = 0; k < size; ++k) point[k] = z[k * s + l];
+      for (int k = 0; k < m; ++k) algebraic[k] = y[k * s + l];
+      const RateStatus status =
+          rate<System>(opaque, t[l], point.data(), algebraic.data(), out.data());
+      if (status != RateStatus::kOk) return false;
+      for (int k = 0; k < size; ++k) z_dot[k * s + l] = out[k];
+      for (int k = 0; k < m; ++k) y[k * s + l] = algebraic[k];
+    }
+    return true;
+  }
+}
+
+template <class System>
+bool jacobians(
+    const void* opaque, const double* t, const double* z, const double* weights, double* jacobian) {
+  if constexpr (PacksRates<System>) {
+    return packed_jacobian<kErasedLanes>(system_of<System>(opaque), t, z, weights, jacobian);
+  } else {
+    return false;
+  }
+}
+
+template <class System>
+Sweep sweep(const void* opaque, const SweepData& data) {
+  constexpr int size = 2 * System::kDof;
+  constexpr int s = kErasedLanes;
+  Sweep sweep{false, move_stages<size, s>(data, [](int, const auto&) {})};
+  sweep.ok = rates<System>(opaque, data.time, data.stages, data.algebraic, data.increments);
+  if (!sweep.ok) return sweep;
+  const Pack<s> weight = Pack<s>::load(data.weights);
+  for (int k = 0; k < size; ++k) {
+    double* const row = data.increments + k * s;
+    (weight * Pack<s>::load(row)).store(row);
+  }
+  return sweep;
+}
+
+template <class System>
+double hamiltonian(
+    const void* opaque, double t, const double* q, const double* p, const double* y) {
+  constexpr int n = System::kDof;
+  constexpr int m = System::kAlgebraic;
+  return system_of<System>(opaque).hamiltonian(t,
+                                               Vector<double, n>(view<n>(q)),
+                                               Vector<double, n>(view<n>(p)),
+                                               Vector<double, m>(view<m>(y)));
+}
+
+template <class System>
+double explicit_rate(
+    const void* opaque, double t, const double* q, const double* p, const double* y) {
+  constexpr int n = System::kDof;
+  constexpr int m = System::kAlgebraic;
+  return carnot::explicit_rate(system_of<System>(opaque),
+                               t,
+                               Vector<double, n>(view<n>(q)),
+                               Vector<double, n>(view<n>(p)),
+                               Vector<double, m>(view<m>(y)));
+}
+
+template <class System>
+RateStatus find_multipliers(
+    const void* opaque, double t, const double* q, const double* p, const double* y, double* out) {
+  constexpr int n = System::kDof;
+  constexpr int m = System::kAlgebraic;
+  constexpr int k = System::kMultipliers;
+  Vector<double, k> lambda = Vector<double, k>::Zero();
+  const RateStatus status = system_of<System>(opaque).multipliers(t,
+                                                                  Vector<double, n>(view<n>(q)),
+                                                                  Vector<double, n>(view<n>(p)),
+                                                                  Vector<double, m>(view<m>(y)),
+                                                                  lambda);
+  view<k>(out) = lambda;
+  return status;
+}
+
+template <class System>
+double constraint_norm(const void* opaque, const double* q, const double* v) {
+  constexpr int n = System::kDof;
+  return carnot::constraint_norm(
+      system_of<System>(opaque), Vector<double, n>(view<n>(q)), Vector<double, n>(view<n>(v)));
+}
+
+template <class System>
+double holonomic_error(const void* opaque, const double* q, const double* v) {
+  constexpr int n = System::kDof;
+  return carnot::holonomic_error(
+      system_of<System>(opaque), Vector<double, n>(view<n>(q)), Vector<double, n>(view<n>(v)));
+}
+
+template <class System>
+double speed(const void* opaque, const double* q, const double* v) {
+  constexpr int n = System::kDof;
+  return system_of<System>(opaque).speed(Vector<double, n>(view<n>(q)),
+                                         Vector<double, n>(view<n>(v)));
+}
+
+template <class System>
+void branch(const void* opaque, double* y) {
+  view<System::kAlgebraic>(y) = SystemOnBranch<System>::from(opaque).branch;
+}
+
+}  // namespace system_calls
+
+// The table of a System; its functions take a SystemOnBranch<System>.
+template <class System>
+const SystemFunctions& functions_of() {
+  namespace calls = system_calls;
+  static constexpr SystemFunctions kFunctions = {System::kDof,
+                                                 System::kAlgebraic,
+                                                 System::kMultipliers,
+                                                 System::kAutonomous,
+                                                 PacksRates<System>,
+                                                 calls::rate<System>,
+                                                 calls::jacobian<System>,
+                                                 calls::rates<System>,
+                                                 calls::jacobians<System>,
+                                                 calls::sweep<System>,
+                                                 calls::hamiltonian<System>,
+                                                 calls::explicit_rate<System>,
+                                                 calls::find_multipliers<System>,
+                                                 calls::constraint_norm<System>,
+                                                 calls::holonomic_error<System>,
+                                                 calls::speed<System>,
+                                                 calls::branch<System>};
+  return kFunctions;
+}
+
+}  // namespace carnot

@@ -1,0 +1,199 @@
+// The compiled kernels, which reach a scene through function pointers, against those that know it.
+#include "carnot/flow/make_kernel.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "carnot/make_inlined_dynamics.h"
+#include "carnot/scenes/appell.h"
+#include "carnot/scenes/driven_pendulum.h"
+#include "carnot/scenes/vehicle.h"
+
+namespace carnot::make_kernel_test {
+namespace {
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+
+double distance(const std::vector<double>& a, const std::vector<double>& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double change = std::abs(a[i] - b[i]);
+    if (!(change <= largest)) largest = change;
+  }
+  return largest;
+}
+
+// Two runs that differ in the order of their sums only.
+struct Pair {
+  Dynamics compiled;
+  Dynamics inlined;
+  std::vector<double> start;
+  double duration;
+};
+
+Pair vehicle() {
+  const scenes::Vehicle scene;
+  return {make_dynamics(scene),
+          make_inlined_dynamics(scene),
+          {1, 0.5, 0.3, 0.8, 0.7, 0.7, 0.5, 0.2},
+          10};
+}
+
+// H_y = 0 by Newton's method.
+Pair appell() {
+  const scenes::Appell scene;
+  Pair pair{make_dynamics(scene), make_inlined_dynamics(scene), {0, 0, 0, 0, 0, 0}, 1};
+  std::vector<double> velocity{0.8, 0.6, 0.5};
+  const std::vector<double> lambda(pair.compiled.multipliers + 1, 0.1);
+  pair.compiled.momentum(
+      0, pair.start.data(), velocity.data(), lambda.data(), pair.start.data() + 3);
+  return pair;
+}
+
+// H depends on time.
+Pair driven_pendulum() {
+  const scenes::DrivenPendulum scene;
+  return {make_dynamics(scene), make_inlined_dynamics(scene), {0.3, 0.1}, 1};
+}
+
+class MakeKernel : public ::testing::TestWithParam<Pair (*)()> {
+ protected:
+  const Pair pair_ = GetParam()();
+  const StepPlan plan_ = StepPlan::equal(0.1, pair_.duration, 64);
+};
+
+// Of sixty steps with rounding errors of an ulp or so, on motions that enlarge them by ten or so.
+constexpr double kRoundOff = 2000 * kEps;
+
+TEST_P(MakeKernel, FlowsAgree) {
+  std::vector<double> a = pair_.start;
+  std::vector<double> b = pair_.start;
+  ASSERT_TRUE(pair_.compiled.flow(plan_, a.data()).completed());
+  ASSERT_TRUE(pair_.inlined.flow(plan_, b.data()).completed());
+  EXPECT_LE(distance(a, b), kRoundOff);
+}
+
+TEST_P(MakeKernel, TangentsAgree) {
+  const std::size_t size = pair_.start.size();
+  std::vector<double> a = pair_.start;
+  std::vector<double> b = pair_.start;
+  std::vector<double> ma(size * size);
+  std::vector<double> mb(size * size);
+  ASSERT_TRUE(pair_.compiled.tangent_flow(plan_, a.data(), ma.data()).completed());
+  ASSERT_TRUE(pair_.inlined.tangent_flow(plan_, b.data(), mb.data()).completed());
+  double largest = 1;
+  for (const double x : mb) largest = std::max(largest, std::abs(x));
+  EXPECT_LE(distance(ma, mb), kRoundOff * largest);
+}
+
+TEST_P(MakeKernel, MonitorsAgree) {
+  std::vector<double> a = pair_.start;
+  std::vector<double> b = pair_.start;
+  MonitorOptions options;
+  options.samples = 5;
+  const FlowSummary one = pair_.compiled.monitored_flow(plan_, a.data(), options);
+  const FlowSummary other = pair_.inlined.monitored_flow(plan_, b.data(), options);
+  ASSERT_TRUE(one.completed());
+  ASSERT_TRUE(other.completed());
+  EXPECT_NEAR(one.action, other.action, kRoundOff * (1 + std::abs(other.action)));
+  EXPECT_EQ(std::isnan(one.length), std::isnan(other.length));
+  EXPECT_NEAR(one.energy_balance, other.energy_balance, kRoundOff);
+  EXPECT_NEAR(one.energy_drift, other.energy_drift, kRoundOff);
+  EXPECT_NEAR(one.constraint_error, other.constraint_error, kRoundOff);
+  ASSERT_EQ(one.trajectory.lambda.size(), 5U);
+  for (std::size_t i = 0; i < 5; ++i) {
+    ASSERT_EQ(one.trajectory.lambda[i].size(),
+              static_cast<std::size_t>(pair_.compiled.multipliers));
+    EXPECT_LE(distance(one.trajectory.q[i], other.trajectory.q[i]), kRoundOff);
+    EXPECT_LE(distance(one.trajectory.lambda[i], other.trajectory.lambda[i]), 10 * kRoundOff);
+  }
+}
+
+TEST_P(MakeKernel, AutomaticFlowsReachTheTolerance) {
+  constexpr double kTolerance = 1e-9;
+  std::vector<double> exact = pair_.start;
+  const StepPlan fine = StepPlan::equal(0.1, pair_.duration, 512);
+  ASSERT_TRUE(pair_.inlined.flow(fine, exact.data()).completed());
+  std::vector<double> z = pair_.start;
+  ASSERT_TRUE(pair_.compiled.has_automatic_flow());
+  const AutomaticFlow run =
+      pair_.compiled.automatic_flow(0.1, pair_.duration, kTolerance, z.data());
+  if (run.reached) {  // else it says so, and z is the start
+    EXPECT_LE(distance(z, exact), kTolerance);
+  } else {
+    EXPECT_EQ(z, pair_.start);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, MakeKernel, ::testing::Values(vehicle, appell, driven_pendulum));
+
+TEST(MakeKernelFailure, SaysWhyARateFails) {
+  const Dynamics dynamics = make_dynamics(scenes::Vehicle{});
+  std::vector<double> z{0, 0, 0, 0, NAN, 0, 0, 0};
+  const std::vector<double> start = z;
+  const FlowReport report = dynamics.flow(StepPlan::equal(0, 1, 4), z.data());
+  EXPECT_FALSE(report.completed());
+  EXPECT_EQ(report.last.rate, RateStatus::kNotFinite);
+}
+
+TEST(MakeKernelBatch, AdvancesManyAsOne) {
+  const Pair pair = vehicle();
+  constexpr int kCount = 11;
+  constexpr double kTolerance = 1e-10;
+  ASSERT_TRUE(pair.compiled.has_adaptive_batch());
+  std::vector<double> z;
+  for (int i = 0; i < kCount; ++i) {
+    z.insert(z.end(), pair.start.begin(), pair.start.end());
+    z[8 * i + 4] += 0.01 * i;
+  }
+  const std::vector<double> starts = z;
+  const BatchReport report =
+      pair.compiled.adaptive_batch(0, pair.duration, kTolerance, kCount, z.data(), 2);
+  EXPECT_EQ(report.completed, kCount);
+  for (int i = 0; i < kCount; ++i) {
+    std::vector<double> one(starts.begin() + 8 * i, starts.begin() + 8 * i + 8);
+    const StepPlan plan = StepPlan::equal(0, pair.duration, 64);
+    ASSERT_TRUE(pair.inlined.flow(plan, one.data()).completed());
+    const std::vector<double> of_batch(z.begin() + 8 * i, z.begin() + 8 * i + 8);
+    EXPECT_LE(distance(of_batch, one), 1e4 * kTolerance);  // local errors add up and grow
+  }
+}
+
+// More coordinates than any compiled kernel has: ones that rotate against each other, apart from
+// the first two, whose sum stays.
+struct Nine {
+  static constexpr int kDof = kMostCompiled + 1;
+  static constexpr int kMultipliers = 1;
+
+  template <class T>
+  [[nodiscard]] Matrix<T, kDof, kDof> mass(const Vector<T, kDof>& /*q*/) const {
+    Matrix<T, kDof, kDof> m = Matrix<T, kDof, kDof>::Constant(constant<T>(0));
+    for (int i = 0; i < kDof; ++i) m(i, i) = constant<T>(1);
+    return m;
+  }
+  template <class T>
+  [[nodiscard]] Matrix<T, 1, kDof> constraints(const Vector<T, kDof>& /*q*/) const {
+    Matrix<T, 1, kDof> g = Matrix<T, 1, kDof>::Constant(constant<T>(0));
+    g(0, 0) = g(0, 1) = constant<T>(1);
+    return g;
+  }
+};
+
+TEST(MakeKernelSize, SceneOfMoreCoordinatesHasAKernelOfItsOwn) {
+  const Dynamics dynamics = make_dynamics(Nine{});
+  std::vector<double> z(2 * Nine::kDof, 0.0);
+  for (int i = 0; i < Nine::kDof; ++i) z[Nine::kDof + i] = i + 1;
+  ASSERT_TRUE(dynamics.flow(StepPlan::equal(0, 1, 3), z.data()).completed());
+  // Free motion; of the momenta 1 and 2 the common part does not move.
+  EXPECT_NEAR(z[0], -0.5, 8 * kEps);
+  EXPECT_NEAR(z[1], 0.5, 8 * kEps);
+  for (int i = 2; i < Nine::kDof; ++i) EXPECT_NEAR(z[i], i + 1, 16 * kEps * (i + 1));
+}
+
+}  // namespace
+}  // namespace carnot::make_kernel_test
