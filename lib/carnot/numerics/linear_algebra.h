@@ -1,13 +1,17 @@
 // Fixed-size vectors and matrices over any scalar: double, long double, a quad type, a ceres::Jet.
 //
-// carnot::core sets EIGEN_MAX_ALIGN_BYTES=16 for everyone who includes it, so that a program built
-// with default flags and a library built for the machine's own instruction set agree on layouts.
+// EIGEN_MAX_ALIGN_BYTES is 16 for everyone who includes this, as the target carnot::core sees to,
+// so that files compiled for different instruction sets agree on the layout of vectors.
 #pragma once
 
 #include <Eigen/Core>
 #include <cmath>
 
 #include "carnot/numerics/scalar.h"
+
+#if EIGEN_MAX_ALIGN_BYTES != 16
+#error "carnot needs EIGEN_MAX_ALIGN_BYTES=16: link with carnot::core in CMake, which defines it"
+#endif
 
 namespace carnot {
 
