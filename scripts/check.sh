@@ -15,7 +15,7 @@ for preset in "$@"; do
   fi
 done
 
-lists=("$root/scripts/packages.txt" "$root/scripts/packages-test.txt")
+lists=("$root"/scripts/packages{,-test,-docs}.txt)
 [[ " $* " != *" tidy "* ]] || lists+=("$root/scripts/packages-check.txt")
 install_packages "${lists[@]}"
 exec 9>&-  # the lock of prepare.sh: nothing here builds in build/release
