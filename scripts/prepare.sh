@@ -57,11 +57,14 @@ configure() {
   fi
 }
 
-# build_targets [TARGET...]: as many jobs as there are cores, and 2.5 GB of memory for each.
+# As many jobs of the compiler as there are cores, and 2.5 GB of memory for each.
+job_count() {
+  awk -v n="$(nproc)" '/^MemAvailable/ { m = int($2 / 2.5e6) }
+    END { print m < 1 ? 1 : m < n ? m : n }' /proc/meminfo
+}
+
+# build_targets [TARGET...]
 build_targets() {
-  local jobs
-  jobs=$(awk -v n="$(nproc)" '/^MemAvailable/ { m = int($2 / 2.5e6) }
-    END { print m < 1 ? 1 : m < n ? m : n }' /proc/meminfo)
   [ -x "$build/bin/carnot" ] || say 'building, which takes some minutes'
-  quietly cmake --build "$build" --parallel "$jobs" ${1:+--target "$@"}
+  quietly cmake --build "$build" --parallel "$(job_count)" ${1:+--target "$@"}
 }
