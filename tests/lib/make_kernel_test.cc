@@ -164,35 +164,35 @@ TEST(MakeKernelBatch, AdvancesManyAsOne) {
   }
 }
 
-// More coordinates than any compiled kernel has: ones that rotate against each other, apart from
-// the first two, whose sum stays.
-struct Nine {
+// More coordinates than any compiled kernel has: q_i' = q_i+1 and, for the last one, a control.
+struct Chain {
   static constexpr int kDof = kMostCompiled + 1;
-  static constexpr int kMultipliers = 1;
+  static constexpr int kControls = 1;
 
   template <class T>
-  [[nodiscard]] Matrix<T, kDof, kDof> mass(const Vector<T, kDof>& /*q*/) const {
-    Matrix<T, kDof, kDof> m = Matrix<T, kDof, kDof>::Constant(constant<T>(0));
-    for (int i = 0; i < kDof; ++i) m(i, i) = constant<T>(1);
-    return m;
+  [[nodiscard]] Matrix<T, kDof, 1> frame(const Vector<T, kDof>& /*q*/) const {
+    Matrix<T, kDof, 1> f = Matrix<T, kDof, 1>::Constant(constant<T>(0));
+    f(kDof - 1, 0) = constant<T>(1);
+    return f;
   }
   template <class T>
-  [[nodiscard]] Matrix<T, 1, kDof> constraints(const Vector<T, kDof>& /*q*/) const {
-    Matrix<T, 1, kDof> g = Matrix<T, 1, kDof>::Constant(constant<T>(0));
-    g(0, 0) = g(0, 1) = constant<T>(1);
-    return g;
+  [[nodiscard]] Vector<T, kDof> drift(const Vector<T, kDof>& q) const {
+    Vector<T, kDof> f = Vector<T, kDof>::Constant(constant<T>(0));
+    for (int i = 0; i + 1 < kDof; ++i) f[i] = q[i + 1];
+    return f;
   }
 };
 
-TEST(MakeKernelSize, SceneOfMoreCoordinatesHasAKernelOfItsOwn) {
-  const Dynamics dynamics = make_dynamics(Nine{});
-  std::vector<double> z(2 * Nine::kDof, 0.0);
-  for (int i = 0; i < Nine::kDof; ++i) z[Nine::kDof + i] = i + 1;
-  ASSERT_TRUE(dynamics.flow(StepPlan::equal(0, 1, 3), z.data()).completed());
-  // Free motion; of the momenta 1 and 2 the common part does not move.
-  EXPECT_NEAR(z[0], -0.5, 8 * kEps);
-  EXPECT_NEAR(z[1], 0.5, 8 * kEps);
-  for (int i = 2; i < Nine::kDof; ++i) EXPECT_NEAR(z[i], i + 1, 16 * kEps * (i + 1));
+TEST(MakeKernelSize, MoreCoordinatesHaveAKernelOfTheirOwn) {
+  const Dynamics dynamics = make_dynamics(Chain{});
+  std::vector<double> z(2 * Chain::kDof, 0.0);
+  z.back() = 1;  // the control, constant
+  ASSERT_TRUE(dynamics.flow(StepPlan::equal(0, 1, 2), z.data()).completed());
+  double exact = 1;  // t^k / k! at t = 1, from the end of the chain
+  for (int i = Chain::kDof - 1; i >= 0; --i) {
+    exact /= Chain::kDof - i;
+    EXPECT_NEAR(z[i], exact, 16 * kEps);
+  }
 }
 
 }  // namespace
