@@ -4,6 +4,7 @@
 #include "carnot/plots/curve.h"
 #include "carnot/plots/script.h"
 #include "carnot/plots/series_plot.h"
+#include "carnot/plots/units.h"
 #include "continue/continue_result.h"
 #include "text/text_table.h"
 
@@ -73,7 +74,7 @@ SeriesPanel action_panel(const ContinueRequest& request, const ContinuationRepor
   SeriesPanel panel;
   panel.title = "action";
   panel.x.label = axis_label(request.along, request.run);
-  panel.y.label = "action";
+  panel.y.label = plots::with_unit("action", "energy time");
   add_curves(
       request,
       report,
@@ -93,7 +94,9 @@ SeriesPanel momentum_panel(const ContinueRequest& request, const ContinuationRep
   panel.y.label = "p(0)";
   std::vector<SpecialValue> values;
   for (std::size_t j = 0; j < request.ends.from.size(); ++j) {
-    const std::string title = fmt::format("p_{{{}}}", plots::coordinate_symbol(info, j));
+    const std::string title =
+        plots::with_unit(fmt::format("p_{{{}}}", plots::coordinate_symbol(info, j)),
+                         plots::momentum_unit(plots::coordinate_unit(info, j)));
     // The colours of folds and branch points are taken.
     const int color = static_cast<int>(j < kFoldColor ? j : j + 2);
     add_curves(

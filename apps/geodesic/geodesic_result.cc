@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "carnot/plots/figure.h"
+#include "carnot/plots/curves_of.h"
 #include "run/geodesic_text.h"
 #include "text/csv_text.h"
 #include "text/text_table.h"
@@ -115,18 +115,6 @@ std::string report_text(const GeodesicRequest& request, const GeodesicReport& re
   return text;
 }
 
-std::vector<plots::Curve> curves(const GeodesicReport& report) {
-  std::vector<plots::Curve> curves;
-  for (const Geodesic& geodesic : report.geodesics) {
-    curves.push_back({fmt::format("geodesic {}", curves.size() + 1),
-                      &geodesic.trajectory,
-                      geodesic.action,
-                      geodesic.length,
-                      geodesic.extremes});
-  }
-  return curves;
-}
-
 }  // namespace
 
 Result geodesic_result(const GeodesicRequest& request,
@@ -144,7 +132,8 @@ Result geodesic_result(const GeodesicRequest& request,
     return csv_text(dynamics.info, dynamics.multipliers, trajectories);
   };
   result.draw = [&](const std::string& file) {
-    return plots::write_figure(file, dynamics.info, curves(report), request.run.destination.figure);
+    return plots::write_figure(
+        file, dynamics.info, plots::curves_of(report.geodesics), request.run.destination.figure);
   };
   return result;
 }

@@ -170,9 +170,13 @@ TEST(VehicleTest, IsDrawnWithItsLength) {
   const auto lines = vehicle.info().drawing.body(q.data());
   ASSERT_EQ(lines.size(), 3U);
   const auto& body = lines[0].points;
-  EXPECT_EQ(body[1][0], q[0]);
-  EXPECT_EQ(body[1][1], q[1]);
-  const double length = std::hypot(body[1][0] - body[0][0], body[1][1] - body[0][1]);
+  EXPECT_EQ(body.front(), body.back());  // an outline
+  const auto middle = [&](std::size_t wheel, std::size_t i) {
+    return (lines[wheel].points[0][i] + lines[wheel].points[1][i]) / 2;
+  };
+  EXPECT_NEAR(middle(2, 0), q[0], 4 * kEps);
+  EXPECT_NEAR(middle(2, 1), q[1], 4 * kEps);
+  const double length = std::hypot(middle(2, 0) - middle(1, 0), middle(2, 1) - middle(1, 1));
   EXPECT_NEAR(length, vehicle.length, 4 * kEps);
 }
 

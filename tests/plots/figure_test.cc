@@ -1,8 +1,10 @@
 #include "carnot/plots/figure.h"
 
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
+#include "carnot/plots/curves_of.h"
 #include "plot_fixtures.h"
 
 namespace carnot::plots {
@@ -123,6 +125,95 @@ TEST_F(FigureFile, NoMultipliersNoPanel) {
   for (auto& lambda : free.lambda) lambda.clear();
   draw_silently(file("a.svg"), plane_scene(), {curve_of(free)}, Figure::kTime);
   EXPECT_EQ(contents(file("a.svg")).find("λ"), std::string::npos);
+}
+
+TEST_F(FigureFile, DotsForZeroErrorAreInTheLegendOnlyIfThereAreAny) {
+  Trajectory trajectory = wave(20);
+  for (std::size_t i = 0; i < 20; ++i) trajectory.hamiltonian[i] = i == 0 ? 1 : 1 + 1e-12;
+  draw_silently(file("a.svg"), plane_scene(), {curve_of(trajectory)}, Figure::kTime);
+  EXPECT_EQ(contents(file("a.svg")).find("exactly 0"), std::string::npos);
+  trajectory.hamiltonian[7] = 1;
+  draw_silently(file("a.svg"), plane_scene(), {curve_of(trajectory)}, Figure::kTime);
+  EXPECT_NE(contents(file("a.svg")).find("exactly 0"), std::string::npos);
+}
+
+TEST_F(FigureFile, ALineWithoutPointsIsNotInTheLegend) {
+  Trajectory trajectory = wave(20);
+  for (double& h : trajectory.hamiltonian) h = 1;
+  draw_silently(file("a.svg"), plane_scene(), {curve_of(trajectory)}, Figure::kTime);
+  const std::string svg = contents(file("a.svg"));
+  EXPECT_EQ(svg.find("|H"), std::string::npos);
+  EXPECT_NE(svg.find("exactly 0"), std::string::npos);
+}
+
+TEST_F(FigureFile, MomentaHaveTheUnitOfActionOverThatOfTheCoordinate) {
+  SceneInfo info = plane_scene();
+  info.configuration[1].unit = "rad/time";
+  info.configuration[2].unit = "1";
+  const Trajectory trajectory = wave(10);
+  draw_silently(file("a.svg"), info, {curve_of(trajectory)}, Figure::kTime);
+  const std::string svg = contents(file("a.svg"));
+  for (const std::string text : {"[action/length]", "[action time/rad]", "[action]"}) {
+    EXPECT_NE(svg.find(text), std::string::npos) << text;
+  }
+}
+
+TEST_F(FigureFile, WhatIsDrawnIsInTheLegend) {
+  const Trajectory trajectory = wave(20);
+  for (const View view : {View::kPlane, View::kSpace}) {
+    SceneInfo info = scene_of(view);
+    info.drawing.body_in_space = [](const double* q) {
+      return std::vector<SpaceLine>{{{{q[0], q[1], q[2]}, {q[0], q[1], q[2] + 0.1}}}};
+    };
+    draw_silently(file("a.svg"), info, {curve_of(trajectory)});
+    EXPECT_EQ(contents(file("a.svg")).find("a flag"), std::string::npos);
+    info.drawing.glyph = "a flag";
+    info.drawing.path = "its pole";
+    draw_silently(file("a.svg"), info, {curve_of(trajectory)});
+    const std::string svg = contents(file("a.svg"));
+    EXPECT_NE(svg.find("a flag"), std::string::npos);
+    EXPECT_NE(svg.find("path of its pole"), std::string::npos);
+    EXPECT_EQ(svg.find("shadow") != std::string::npos, view == View::kSpace);
+  }
+}
+
+TEST_F(FigureFile, APlaceMayBeDrawnInsteadOfCoordinates) {
+  SceneInfo info = scene_of(View::kSpace);
+  info.drawing.place = {{{{"X", "mile", 0}, {"Y", "mile", 0}, {"Z", "mile^2", 0}}},
+                        [](const double* q) -> std::array<double, 3> {
+                          return {std::cos(q[0]), std::sin(q[0]), 0};
+                        }};
+  for (const double sphere : {0.0, 1.0}) {
+    info.drawing.sphere = sphere;
+    const Trajectory trajectory = wave(40);
+    draw_silently(file("a.svg"), info, {curve_of(trajectory)});
+    const std::string svg = contents(file("a.svg"));
+    EXPECT_NE(svg.find("X [mile]"), std::string::npos);
+    EXPECT_EQ(svg.find("x [length]"), std::string::npos);
+    EXPECT_EQ(svg.find("shadow") == std::string::npos, sphere > 0);
+    draw_all(file("place"), trajectory);
+  }
+}
+
+struct Found {
+  Trajectory trajectory;
+  double action = 2;
+  std::optional<double> length;
+  std::vector<std::pair<std::string, double>> extremes;
+};
+
+TEST_F(FigureFile, WhateverWasFoundBecomesCurves) {
+  std::vector<Found> found(2);
+  found[0].trajectory = found[1].trajectory = wave(10);
+  found[1].length = 3;
+  const std::vector<Curve> curves = curves_of(found);
+  ASSERT_EQ(curves.size(), 2U);
+  EXPECT_EQ(curves[1].name, "geodesic 2");
+  EXPECT_EQ(curves[1].trajectory, &found[1].trajectory);
+  EXPECT_EQ(curves[0].action, 2);
+  EXPECT_FALSE(curves[0].length.has_value());
+  EXPECT_EQ(curves[1].length, 3);
+  draw_silently(file("a.svg"), plane_scene(), curves);
 }
 
 TEST_F(FigureFile, BadInputIsRefused) {

@@ -12,7 +12,7 @@ TEST(Script, NamesBecomeMarkup) {
   EXPECT_EQ(symbol("x1"), "x_{1}");
   EXPECT_EQ(symbol("a_b"), "a\\_b");
   EXPECT_EQ(symbol("7"), "7");
-  EXPECT_EQ(with_unit("x", "length^2"), "x [length\\^2]");
+  EXPECT_EQ(with_unit("x", "length^2"), "x [length^{2}]");
   EXPECT_EQ(with_unit("x", ""), "x");
 }
 

@@ -1,12 +1,14 @@
 // What a scene says of itself: names, units, periods, parameters, symmetries, how to draw it.
 //
-// Everything here is optional for a scene; without it coordinates are called q1, q2, ...
+// Everything here is optional for a scene. Without it the scene is called like its type, and its
+// coordinates are called q1, q2, ...
 #pragma once
 
 #include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <source_location>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -49,30 +51,48 @@ struct Parameter {
   const char* meaning;
 };
 
-// A line through points of the plane, part of a body.
+// A line through points of the plane, part of a body. It is closed where its last point is its
+// first. A wheel of two points, the ends of its diameter as seen from above, is drawn as a narrow
+// rectangle. body.h makes the usual parts.
 struct Polyline {
   enum class Role { kBody, kWheel };
   Role role = Role::kBody;
   std::vector<std::array<double, 2>> points;
 };
 
-// Which coordinates make the picture, and the body at a configuration (plane only).
+// A line through points of space, part of a body.
+struct SpaceLine {
+  std::vector<std::array<double, 3>> points;
+};
+
+// How the scene is drawn: which point makes the path, and the body at a configuration. Functions
+// get the kDof numbers of q and return lengths in the units of the axes; empty ones draw nothing.
 struct Drawing {
   enum class View { kTimeOnly, kPlane, kSpace };
+  // A point of space as a function of q, with the names and units of its coordinates.
+  struct Place {
+    std::array<Coordinate, 3> coordinates;
+    std::function<std::array<double, 3>(const double* q)> at;
+  };
   View view = View::kTimeOnly;
-  std::array<int, 3> axes{0, 1, 2};
-  std::function<std::vector<Polyline>(const double* q)> body;
+  std::array<int, 3> axes{0, 1, 2};  // the coordinates drawn; the third one only in space
+  std::function<std::vector<Polyline>(const double* q)> body{};            // in the plane
+  std::function<std::vector<SpaceLine>(const double* q)> body_in_space{};  // in space
+  Place place{};        // in space, instead of the coordinates in `axes`
+  double sphere = 0;    // the path lies on a sphere of this radius about the origin; 0: on none
+  std::string path{};   // what moves along the path, for the legend; empty: the coordinates
+  std::string glyph{};  // what the body is, for the legend; empty: it needs no word
 };
 
 // Symmetries of the scene. Reversing time, q(t) -> q(T - t) with p -> -p, is one of every scene
 // with velocity constraints and needs no word.
 struct Symmetries {
   // Diagonal of a linear map q -> D q that leaves H invariant together with p -> D p.
-  std::vector<std::vector<double>> mirrors;
+  std::vector<std::vector<double>> mirrors{};
   // Rigid motions of the plane move the coordinates x, y and turn all the angles.
   int x = -1;
   int y = -1;
-  std::vector<int> angles;
+  std::vector<int> angles{};
   // Other coordinates that H does not depend on.
   std::vector<int> cyclic{};
 };
@@ -105,14 +125,38 @@ concept HasParameters = requires {
   Scene::parameters();
 };
 
-// The scene's own description, or q1, ..., qn.
+// "Coin" for a struct Coin, in whatever namespace it is.
+template <class Scene>
+std::string type_name() {
+  // "... [with Scene = A::Coin<2>; ...]" or "... [Scene = A::Coin<2>]"
+  const std::string text = std::source_location::current().function_name();
+  const std::string head = "Scene = ";
+  const std::size_t found = text.find(head);
+  if (found == std::string::npos) return "scene";
+  std::string name;
+  int depth = 0;  // of brackets
+  for (std::size_t i = found + head.size(); i < text.size(); ++i) {
+    const char c = text[i];
+    if (depth == 0 && (c == ';' || c == ']')) break;
+    if (depth == 0 && c == ':') {
+      name.clear();
+      continue;
+    }
+    depth += c == '<' || c == '(' || c == '{' || c == '[' ? 1 : 0;
+    depth -= c == '>' || c == ')' || c == '}' || c == ']' ? 1 : 0;
+    name += c;
+  }
+  return name;
+}
+
+// The scene's own description. A scene without a name is called like its type, coordinates that
+// are not described are called q1, ..., qn.
 template <class Scene>
 SceneInfo describe_scene(const Scene& scene) {
   SceneInfo info;
-  if constexpr (HasInfo<Scene>) {
-    info = scene.info();
-  } else {
-    info.name = "scene";
+  if constexpr (HasInfo<Scene>) info = scene.info();
+  if (info.name.empty()) info.name = type_name<Scene>();
+  if (info.configuration.empty()) {
     for (int i = 0; i < Scene::kDof; ++i) {
       info.configuration.push_back({"q" + std::to_string(i + 1), "", 0});
     }

@@ -16,6 +16,7 @@
 
 #include "carnot/numerics/linear_algebra.h"
 #include "carnot/numerics/scalar.h"
+#include "carnot/scene/body.h"
 #include "carnot/scene/scene_info.h"
 
 namespace carnot::scenes {
@@ -81,9 +82,9 @@ struct Bicycle {
                           {"theta", "rad", 2 * std::numbers::pi},
                           {"delta", "rad", 0}};
     // The second one drives backwards.
-    info.symmetries = {{{1, -1, -1, -1}, {-1, 1, -1, 1}}, 0, 1, {2}};
-    info.drawing = {
-        Drawing::View::kPlane, {0, 1, 2}, [l = length](const double* q) { return body(l, q); }};
+    info.symmetries = {.mirrors = {{1, -1, -1, -1}, {-1, 1, -1, 1}}, .x = 0, .y = 1, .angles = {2}};
+    info.drawing = {.view = Drawing::View::kPlane,
+                    .body = [l = length](const double* q) { return body(l, q); }};
     info.extremes = {{"largest_steering_angle", "rad", [](const double* q) { return q[3]; }}};
     return info;
   }
@@ -94,14 +95,9 @@ struct Bicycle {
     const double r = kWheelRadius * length;
     const double front_x = q[0] + length * std::cos(q[2]);
     const double front_y = q[1] + length * std::sin(q[2]);
-    const auto wheel = [r](double x, double y, double heading) {
-      const double dx = r * std::cos(heading);
-      const double dy = r * std::sin(heading);
-      return Polyline{Polyline::Role::kWheel, {{x - dx, y - dy}, {x + dx, y + dy}}};
-    };
     return {{Polyline::Role::kBody, {{q[0], q[1]}, {front_x, front_y}}},
-            wheel(q[0], q[1], q[2]),
-            wheel(front_x, front_y, q[2] + q[3])};
+            wheel({q[0], q[1]}, q[2], r),
+            wheel({front_x, front_y}, q[2] + q[3], r)};
   }
 };
 

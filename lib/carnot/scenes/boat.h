@@ -75,7 +75,7 @@ struct Boat {
     info.reference = "Bryson & Ho, Applied Optimal Control (1975), ch. 2";
     info.configuration = {{"x", "length", 0}, {"y", "length", 0}};
     info.symmetries.mirrors = {{-1, -1}};
-    info.drawing = {Drawing::View::kPlane, {0, 1, 1}, {}};
+    info.drawing = {.view = Drawing::View::kPlane, .axes = {0, 1, 1}};
     return info;
   }
 };

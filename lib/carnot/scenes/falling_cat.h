@@ -90,7 +90,11 @@ struct FallingCat {
     info.configuration = {{"theta", "rad", kTurn}, {"a", "rad", kTurn}, {"b", "rad", kTurn}};
     info.symmetries.mirrors = {{-1, -1, -1}};
     info.symmetries.cyclic = {0};
-    info.drawing = {Drawing::View::kPlane, {1, 2, 0}, body};
+    info.drawing = {.view = Drawing::View::kPlane,
+                    .axes = {1, 2, 0},
+                    .body = body,
+                    .path = "the shape",
+                    .glyph = "the cat, small"};
     info.extremes = {{"largest_bend", "rad", [](const double* q) {
                         return std::max(std::abs(q[1]), std::abs(q[2]));
                       }}};
@@ -100,7 +104,7 @@ struct FallingCat {
  private:
   // The cat, small, about its centre of mass, at its shape (a, b).
   static std::vector<Polyline> body(const double* q) {
-    constexpr double kHalfLength = 0.05;  // rad
+    constexpr double kHalfLength = 0.06;  // rad
     using Point = std::array<double, 2>;
     const auto along = [](const Point& from, double links, double heading) {
       const double length = links * kHalfLength;

@@ -69,7 +69,7 @@ struct Grushin {
     info.configuration = {{"x", "length", 0}, {"y", "length^2", 0}};
     info.symmetries.mirrors = {{-1, 1}, {1, -1}};
     info.symmetries.cyclic = {1};
-    info.drawing = {Drawing::View::kPlane, {0, 1, 1}, {}};
+    info.drawing = {.view = Drawing::View::kPlane, .axes = {0, 1, 1}};
     return info;
   }
 };

@@ -25,6 +25,7 @@
 
 #include "carnot/numerics/linear_algebra.h"
 #include "carnot/numerics/scalar.h"
+#include "carnot/scene/body.h"
 #include "carnot/scene/scene_info.h"
 
 namespace carnot::scenes {
@@ -115,8 +116,17 @@ struct PlateBall {
                           {"psi", "rad", kTurn},
                           {"theta", "rad", kTurn},
                           {"phi", "rad", kTurn}};
-    info.symmetries = {{{1, -1, -1, 1, -1}, {-1, -1, 1, -1, -1}, {-1, 1, -1, -1, 1}}, 0, 1, {2}};
-    info.drawing.view = Drawing::View::kPlane;
+    info.symmetries = {.mirrors = {{1, -1, -1, 1, -1}, {-1, -1, 1, -1, -1}, {-1, 1, -1, -1, 1}},
+                       .x = 0,
+                       .y = 1,
+                       .angles = {2}};
+    info.drawing = {.view = Drawing::View::kPlane,
+                    .body =
+                        [](const double* q) {
+                          constexpr double kShown = 0.15;  // of the radius
+                          return globe({q[0], q[1]}, kShown, attitude_of_angles(q[2], q[3], q[4]));
+                        },
+                    .glyph = "ball from above, drawn small"};
     return info;
   }
 };

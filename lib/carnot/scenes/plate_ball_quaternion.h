@@ -18,6 +18,7 @@
 #include "carnot/numerics/linear_algebra.h"
 #include "carnot/numerics/quaternion.h"
 #include "carnot/numerics/scalar.h"
+#include "carnot/scene/body.h"
 #include "carnot/scene/scene_info.h"
 
 namespace carnot::scenes {
@@ -109,7 +110,13 @@ struct PlateBallQuaternion {
                           {"qz", "1", 0}};
     info.symmetries.mirrors = {
         {1, 1, -1, -1, -1, -1}, {1, -1, 1, -1, 1, -1}, {-1, 1, 1, 1, -1, -1}};
-    info.drawing.view = Drawing::View::kPlane;
+    info.drawing = {.view = Drawing::View::kPlane,
+                    .body =
+                        [](const double* q) {
+                          constexpr double kShown = 0.15;  // of the radius
+                          return globe({q[0], q[1]}, kShown, attitude_of_quaternion(q + 2));
+                        },
+                    .glyph = "ball from above, drawn small"};
     return info;
   }
 };

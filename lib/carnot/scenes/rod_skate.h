@@ -95,7 +95,7 @@ struct RodSkate {
     info.configuration = {
         {"x1", "length", 0}, {"y1", "length", 0}, {"x2", "length", 0}, {"y2", "length", 0}};
     info.symmetries.mirrors = {{-1, 1, -1, 1}};
-    info.drawing = {Drawing::View::kPlane, {0, 1, 2}, body};
+    info.drawing = {.view = Drawing::View::kPlane, .body = body};
     return info;
   }
 

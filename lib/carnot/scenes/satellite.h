@@ -26,6 +26,7 @@
 
 #include "carnot/numerics/linear_algebra.h"
 #include "carnot/numerics/scalar.h"
+#include "carnot/scene/body.h"
 #include "carnot/scene/scene_info.h"
 
 namespace carnot::scenes {
@@ -131,16 +132,20 @@ struct Satellite {
     info.configuration = {{"psi", "rad", kTurn}, {"theta", "rad", kTurn}, {"phi", "rad", kTurn}};
     info.symmetries.mirrors = {{-1, 1, -1}, {-1, -1, 1}, {1, -1, -1}};
     info.symmetries.cyclic = {0};
-    // A map of where the body's x axis points: longitude psi and latitude -theta, with its y axis,
-    // such as a solar panel, turned by the roll phi.
+    // The sphere of directions: where the body's x axis points, with its y axis as an arrow there.
     info.drawing = {
-        Drawing::View::kPlane, {0, 1, 2}, [](const double* q) {
-          constexpr double kHalfSpan = 0.1;
-          const double dx = kHalfSpan * std::cos(q[2]);
-          const double dy = kHalfSpan * std::sin(q[2]);
-          return std::vector<Polyline>{
-              {Polyline::Role::kBody, {{q[0] - dx, q[1] + dy}, {q[0] + dx, q[1] - dy}}}};
-        }};
+        .view = Drawing::View::kSpace,
+        .body_in_space =
+            [](const double* q) {
+              const Attitude axes = attitude_of_angles(q[0], q[1], q[2]);
+              constexpr double kArrow = 0.25;
+              return arrow_on_sphere(axes[0], axes[1], kArrow);
+            },
+        .place = {{{{"X", "1", 0}, {"Y", "1", 0}, {"Z", "1", 0}}},
+                  [](const double* q) { return attitude_of_angles(q[0], q[1], q[2])[0]; }},
+        .sphere = 1,
+        .path = "the body's x axis",
+        .glyph = "its y axis"};
     info.extremes = {{"largest_pitch", "rad", [](const double* q) { return q[1]; }}};
     return info;
   }

@@ -19,6 +19,7 @@
 #include "carnot/numerics/linear_algebra.h"
 #include "carnot/numerics/quaternion.h"
 #include "carnot/numerics/scalar.h"
+#include "carnot/scene/body.h"
 #include "carnot/scene/scene_info.h"
 
 namespace carnot::scenes {
@@ -106,6 +107,19 @@ struct SatelliteQuaternion {
     info.reference = "Boscain & Rossi, SIAM J. Control Optim. 47 (2008)";
     info.configuration = {{"w", "1", 0}, {"x", "1", 0}, {"y", "1", 0}, {"z", "1", 0}};
     info.symmetries.mirrors = {{-1, -1, -1, -1}, {1, 1, -1, -1}, {1, -1, 1, -1}, {1, -1, -1, 1}};
+    // The sphere of directions: where the body's x axis points, with its y axis as an arrow there.
+    info.drawing = {.view = Drawing::View::kSpace,
+                    .body_in_space =
+                        [](const double* q) {
+                          const Attitude axes = attitude_of_quaternion(q);
+                          constexpr double kArrow = 0.25;
+                          return arrow_on_sphere(axes[0], axes[1], kArrow);
+                        },
+                    .place = {{{{"X", "1", 0}, {"Y", "1", 0}, {"Z", "1", 0}}},
+                              [](const double* q) { return attitude_of_quaternion(q)[0]; }},
+                    .sphere = 1,
+                    .path = "the body's x axis",
+                    .glyph = "its y axis"};
     return info;
   }
 };

@@ -18,6 +18,7 @@
 
 #include "carnot/numerics/linear_algebra.h"
 #include "carnot/numerics/scalar.h"
+#include "carnot/scene/body.h"
 #include "carnot/scene/scene_info.h"
 
 namespace carnot::scenes {
@@ -118,7 +119,14 @@ struct SkateOnSphere {
                           {"e3", "1", 0}};
     info.symmetries.mirrors = {
         {-1, 1, 1, -1, 1, 1}, {1, -1, 1, 1, -1, 1}, {1, 1, -1, 1, 1, -1}, {1, 1, 1, -1, -1, -1}};
-    info.drawing.view = Drawing::View::kSpace;
+    info.drawing = {.view = Drawing::View::kSpace,
+                    .body_in_space =
+                        [](const double* q) {
+                          constexpr double kArrow = 0.25;
+                          return arrow_on_sphere({q[0], q[1], q[2]}, {q[3], q[4], q[5]}, kArrow);
+                        },
+                    .sphere = 1,
+                    .glyph = "heading of the skate"};
     return info;
   }
 };

@@ -65,7 +65,13 @@ struct SphericalPendulum {
     info.reference = "McLachlan, Modin, Verdier & Wilkins, SIAM J. Sci. Comput. 35 (2013), sec. 4";
     info.configuration = {{"x", "length", 0}, {"y", "length", 0}, {"z", "length", 0}};
     info.symmetries.mirrors = {{-1, 1, 1}, {1, -1, 1}};
-    info.drawing.view = Drawing::View::kSpace;
+    info.drawing = {.view = Drawing::View::kSpace,
+                    .body_in_space =
+                        [](const double* q) {
+                          return std::vector<SpaceLine>{{{{0, 0, 0}, {q[0], q[1], q[2]}}}};
+                        },
+                    .sphere = length,
+                    .glyph = "rod"};
     return info;
   }
 };

@@ -27,6 +27,7 @@
 
 #include "carnot/numerics/linear_algebra.h"
 #include "carnot/numerics/scalar.h"
+#include "carnot/scene/body.h"
 #include "carnot/scene/scene_info.h"
 
 namespace carnot::scenes {
@@ -143,7 +144,7 @@ struct Trailers {
       mirror.push_back(-1);
     }
     info.symmetries.mirrors = {mirror};
-    info.drawing = {Drawing::View::kPlane, {0, 1, 2}, body};
+    info.drawing = {.view = Drawing::View::kPlane, .body = body};
     info.extremes = {{"largest_jackknife_angle", "rad", jackknife_angle}};
     return info;
   }
@@ -156,9 +157,11 @@ struct Trailers {
     return largest;
   }
 
-  // Rods from axle to axle, and a wheel on each.
+  // A box and a wheel on each axle, and rods from axle to axle.
   static std::vector<Polyline> body(const double* q) {
-    constexpr double kWheelRadius = 0.15;  // of the rod
+    constexpr double kLength = 0.55;  // all as multiples of a rod
+    constexpr double kWidth = 0.35;
+    constexpr double kWheelRadius = 0.14;
     std::vector<Polyline> lines;
     double x = q[0];
     double y = q[1];
@@ -170,9 +173,8 @@ struct Trailers {
         x -= c;
         y -= s;
       }
-      const double dx = kWheelRadius * c;
-      const double dy = kWheelRadius * s;
-      lines.push_back({Polyline::Role::kWheel, {{x - dx, y - dy}, {x + dx, y + dy}}});
+      lines.push_back(rectangle({x, y}, q[i], kLength, kWidth));
+      lines.push_back(wheel({x, y}, q[i], kWheelRadius));
     }
     return lines;
   }

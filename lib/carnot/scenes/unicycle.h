@@ -12,6 +12,7 @@
 
 #include "carnot/numerics/linear_algebra.h"
 #include "carnot/numerics/scalar.h"
+#include "carnot/scene/body.h"
 #include "carnot/scene/scene_info.h"
 
 namespace carnot::scenes {
@@ -81,14 +82,10 @@ struct Unicycle {
     info.reference = "Moiseev & Sachkov, ESAIM: COCV 16 (2010)";
     info.configuration = {
         {"x", "length", 0}, {"y", "length", 0}, {"theta", "rad", 2 * std::numbers::pi}};
-    info.symmetries = {{{1, -1, -1}}, 0, 1, {2}};
-    info.drawing = {
-        Drawing::View::kPlane, {0, 1, 2}, [r = 0.15 * beta](const double* q) {
-          const double dx = r * std::cos(q[2]);
-          const double dy = r * std::sin(q[2]);
-          return std::vector<Polyline>{
-              {Polyline::Role::kWheel, {{q[0] - dx, q[1] - dy}, {q[0] + dx, q[1] + dy}}}};
-        }};
+    info.symmetries = {.mirrors = {{1, -1, -1}}, .x = 0, .y = 1, .angles = {2}};
+    info.drawing = {.view = Drawing::View::kPlane, .body = [r = 0.1 * beta](const double* q) {
+                      return std::vector<Polyline>{wheel({q[0], q[1]}, q[2], r)};
+                    }};
     return info;
   }
 };

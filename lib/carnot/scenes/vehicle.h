@@ -19,6 +19,7 @@
 
 #include "carnot/numerics/linear_algebra.h"
 #include "carnot/numerics/scalar.h"
+#include "carnot/scene/body.h"
 #include "carnot/scene/scene_info.h"
 
 namespace carnot::scenes {
@@ -118,9 +119,9 @@ struct Vehicle {
     info.reference = "McLachlan, Modin, Verdier & Wilkins, SIAM J. Sci. Comput. 35 (2013), sec. 5";
     info.configuration = {
         {"x", "length", 0}, {"y", "length", 0}, {"theta", "rad", kTurn}, {"phi", "rad", kTurn}};
-    info.symmetries = {{{1, -1, -1, -1}}, 0, 1, {2, 3}};
-    info.drawing = {
-        Drawing::View::kPlane, {0, 1, 2}, [l = length](const double* q) { return body(l, q); }};
+    info.symmetries = {.mirrors = {{1, -1, -1, -1}}, .x = 0, .y = 1, .angles = {2, 3}};
+    info.drawing = {.view = Drawing::View::kPlane,
+                    .body = [l = length](const double* q) { return body(l, q); }};
     info.extremes = {
         {"largest_steering_angle", "rad", [](const double* q) { return q[3] - q[2]; }}};
     return info;
@@ -128,18 +129,14 @@ struct Vehicle {
 
  private:
   static std::vector<Polyline> body(double length, const double* q) {
-    constexpr double kWheelRadius = 0.15;  // of the wheelbase
-    const double r = kWheelRadius * length;
-    const double rear_x = q[0] - length * std::cos(q[2]);
-    const double rear_y = q[1] - length * std::sin(q[2]);
-    const auto wheel = [r](double x, double y, double heading) {
-      const double dx = r * std::cos(heading);
-      const double dy = r * std::sin(heading);
-      return Polyline{Polyline::Role::kWheel, {{x - dx, y - dy}, {x + dx, y + dy}}};
-    };
-    return {{Polyline::Role::kBody, {{rear_x, rear_y}, {q[0], q[1]}}},
-            wheel(rear_x, rear_y, q[2]),
-            wheel(q[0], q[1], q[3])};
+    constexpr double kLength = 1.5;  // all as multiples of the wheelbase
+    constexpr double kWidth = 0.4;
+    constexpr double kWheelRadius = 0.14;
+    const double dx = length * std::cos(q[2]);
+    const double dy = length * std::sin(q[2]);
+    return {rectangle({q[0] - dx / 2, q[1] - dy / 2}, q[2], kLength * length, kWidth * length),
+            wheel({q[0] - dx, q[1] - dy}, q[2], kWheelRadius * length),
+            wheel({q[0], q[1]}, q[3], kWheelRadius * length)};
   }
 };
 

@@ -1,6 +1,7 @@
 #include "carnot/plots/animation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "carnot/plots/panels.h"
@@ -45,7 +46,7 @@ void add_ghosts(Plot& plot,
       return body_rows(info, trajectory, {rows[i]}, role, frame, 0);
     };
     plot.add(lines(Role::kBody), "using 1:2 with lines lw 3" + solid(colors[i]))
-        .add(lines(Role::kWheel), "using 1:2 with lines lw 6" + solid(colors[i]))
+        .add(lines(Role::kWheel), "using 1:2 with lines lw 2" + solid(colors[i]))
         .add({i == 0 ? path.front() : path.back()},
              (i == 0 ? "with points pt 7 ps 1.3" : "with points pt 5 ps 1.2") + solid(colors[i]));
   }
@@ -60,7 +61,7 @@ void put_time(Script& script, const Picture& page, double t) {
 Picture plane_animation(const SceneInfo& info, const Curve& curve) {
   using Role = Polyline::Role;
   const Trajectory trajectory = thinned(*curve.trajectory, kMostRows);
-  PlaneFrame frame(PlaneExtent(info, {curve}), {90, kBelow, 685, 520});
+  PlaneFrame frame(PlaneExtent(info, {curve}, 0), {90, kBelow, 685, 520});
   frame.box.y = kBelow;
   Picture page;
   page.animated = true;
@@ -68,7 +69,9 @@ Picture plane_animation(const SceneInfo& info, const Curve& curve) {
   Script script;
   const Box bar{frame.box.x + frame.box.width + 22, kBelow, 14, frame.box.height};
   std::vector<LegendEntry> legend = path_legend(info, curve, frame);
-  legend.resize(3);  // no tracks of other wheels
+  std::erase_if(legend, [](const LegendEntry& entry) {  // no tracks are drawn
+    return entry.title.find("other wheel") == 0;
+  });
   const Rows path = path_rows(info, trajectory, frame);
   for (const std::size_t row : frame_rows(trajectory)) {
     script << "set multiplot\nset key off\nunset label\n";
@@ -84,10 +87,10 @@ Picture plane_animation(const SceneInfo& info, const Curve& curve) {
     const Rows travelled = up_to(path, row + 1);
     plot.add(travelled, "using 1:2:3 with lines lw 2 lc palette")
         .add(lines(Role::kBody), "using 1:2 with lines lw 3" + solid(kMoving))
-        .add(lines(Role::kWheel), "using 1:2 with lines lw 6" + solid(kMoving))
+        .add(lines(Role::kWheel), "using 1:2 with lines lw 2" + solid(kMoving))
         .add({travelled.back()}, "using 1:2 with points pt 7 ps 0.8" + solid(kMoving))
         .draw();
-    draw_legend(script, page, page.width / 2, legend);
+    draw_legend(script, page, page.width / 2, page.width - 40, legend);
     script << "unset multiplot\n";
   }
   page.commands = script.text();
@@ -95,25 +98,29 @@ Picture plane_animation(const SceneInfo& info, const Curve& curve) {
 }
 
 Picture space_animation(const SceneInfo& info, const Curve& curve) {
-  constexpr double kTurned = 60;  // degrees, in all
+  constexpr double kTurned = 50;  // degrees, in all
+  constexpr double kFoot = 62;
   const Trajectory trajectory = thinned(*curve.trajectory, kMostRows);
   const SpaceFrame frame(info, {curve});
+  const double first = frame.turn - kTurned / 4;
+  const std::array<double, 2> turns = {first, first + kTurned};
+  const Box room{20, kFoot, 755, 540};
+  const Box box = SpaceView(frame, room, first, turns).box();
+  const Box place{room.x + (room.width - box.width) / 2, kFoot, box.width, box.height};
   Picture page;
   page.animated = true;
-  page.height = 700;
-  const Box box{90, kBelow, 685, page.height - kBelow - kAbove};
+  page.height = kFoot + box.height + kAbove;
   Script script;
-  const Rows points = space_rows(info, trajectory, frame);
   const std::vector<std::size_t> rows = frame_rows(trajectory);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const double turned = static_cast<double>(i) / static_cast<double>(rows.size());
+    const SpaceView view(frame, place, first + kTurned * turned, turns);
     script << "set multiplot\nset key off\nunset label\n";
-    set_space(script, page, info, frame, box, kTurn + kTurned * turned);
-    set_time_colors(script, page, times_of({curve}), {797, kBelow, 14, box.height});
+    set_time_colors(script, page, times_of({curve}), {797, kFoot, 14, box.height});
     put_title(script, page, info, curve);
     put_time(script, page, trajectory.t[rows[i]]);
-    draw_space(script, up_to(points, rows[i] + 1), frame, points.back());
-    draw_legend(script, page, page.width / 2, space_legend());
+    draw_space(script, page, info, trajectory, view, rows[i], {rows[i]});
+    draw_legend(script, page, page.width / 2, page.width - 40, space_legend(info));
     script << "unset multiplot\n";
   }
   page.commands = script.text();

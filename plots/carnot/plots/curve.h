@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "carnot/flow/trajectory.h"
+#include "carnot/flow/reports.h"
 #include "carnot/scene/scene_info.h"
 
 namespace carnot::plots {

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "carnot/plots/animation.h"
+#include "carnot/plots/instants.h"
 #include "carnot/plots/panels.h"
 #include "carnot/plots/path_plot.h"
 #include "carnot/plots/space_plot.h"
@@ -35,7 +36,7 @@ Picture overview_picture(const SceneInfo& info, const Curve& curve) {
   constexpr TimePanels kPanels{};
   const double inside = 135 * static_cast<double>(count_panels(curve, kPanels)) + 20;
   Picture page;
-  page.width = 1400;
+  page.width = 1420;
   page.height = kBelow + inside + kAbove;
   Script script;
   script << "set multiplot\n";
@@ -43,22 +44,27 @@ Picture overview_picture(const SceneInfo& info, const Curve& curve) {
   script << "set key off\n";
   const Box left{90, kBelow, 480, inside};
   if (info.drawing.view == View::kPlane) {
-    const PlaneFrame frame(PlaneExtent(info, {curve}), left);
+    const PlaneFrame frame(PlaneExtent(info, {curve}, kBodies), left);
     set_time_colors(script,
                     page,
                     times_of({curve}),
                     {frame.box.x + frame.box.width + 18, frame.box.y, 14, frame.box.height});
     set_plane(script, page, info, frame);
     draw_path(script, info, curve, frame, kBodies);
-    draw_legend(script, page, 340, path_legend(info, curve, frame));
+    draw_legend(script, page, 340, 640, path_legend(info, curve, frame));
   } else {
-    const SpaceFrame frame(info, {curve});
+    const SpaceView view(SpaceFrame(info, {curve}), {15, kBelow - 40, 585, inside + 40});
+    const Box& box = view.box();
     set_time_colors(
-        script, page, times_of({curve}), {left.x + left.width + 18, kBelow, 14, inside});
-    set_space(script, page, info, frame, left);
-    const Rows points = space_rows(info, *curve.trajectory, frame);
-    draw_space(script, points, frame, points.back());
-    draw_legend(script, page, 340, space_legend());
+        script, page, times_of({curve}), {box.x + box.width + 10, box.y, 14, box.height});
+    draw_space(script,
+               page,
+               info,
+               *curve.trajectory,
+               view,
+               curve.trajectory->t.size() - 1,
+               body_instants(info, *curve.trajectory, kBodies));
+    draw_legend(script, page, 340, 640, space_legend(info));
   }
   draw_time_panels(script, page, info, curve, {785, kBelow - 35, 405, inside + 35}, kPanels);
   script << "unset multiplot\n";

@@ -53,6 +53,22 @@ std::string Axis::label(const std::string& symbol, const std::string& unit) cons
   return with_unit(symbol + (offset < 0 ? " + " : " − ") + number(std::abs(offset)), unit);
 }
 
+double tic_step(const Axis& axis, double about, int least) {
+  const auto count = [&](double step) {
+    return std::floor(axis.upper / step + 1e-9) - std::ceil(axis.lower / step - 1e-9) + 1;
+  };
+  double step = round_step(axis.span() / about);
+  constexpr int kMostTries = 10;
+  for (int i = 0; i < kMostTries && count(step) < least; ++i) step = round_step(step / 2.6);
+  return step;
+}
+
+std::string tic_number(double x, double span) {
+  constexpr int kDigits = 6;
+  if (std::abs(x) < 1e-9 * span) return "0";
+  return (x < 0 ? "−" : "") + number(std::abs(x), kDigits);
+}
+
 void set_axis(
     Script& script, const std::string& letter, const Axis& axis, double size, double spacing) {
   const double labels = std::max(2.0, size / spacing);

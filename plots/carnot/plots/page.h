@@ -44,6 +44,11 @@ struct Box {
   double height = 0;
 };
 
+// A step of tics, 1, 2 or 5 times a power of ten: about so many, and not fewer than `least` <= 3.
+double tic_step(const Axis& axis, double about, int least);
+// The number at a tic of an axis of that span, without round-off; markup.
+std::string tic_number(double x, double span);
+
 // "set Xrange" and tics, about one per `spacing` units of a side that is `size` long.
 void set_axis(
     Script& script, const std::string& letter, const Axis& axis, double size, double spacing);

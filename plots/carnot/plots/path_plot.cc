@@ -2,15 +2,19 @@
 
 #include <algorithm>
 
+#include "carnot/plots/instants.h"
+
 namespace carnot::plots {
 namespace {
 
-constexpr std::size_t kBodiesInPanel = 13;
 const std::string kWheelStyle = "with lines lw 1 dt (6,4) lc rgb '#8c8c8c'";
+const std::string kMiddle = "lc rgb '#a82296'";  // of the colours of time
 
 // The bodies between start and goal.
-std::vector<std::size_t> between(const Trajectory& trajectory, std::size_t bodies) {
-  std::vector<std::size_t> instants = spread(trajectory.t.size(), bodies);
+std::vector<std::size_t> between(const SceneInfo& info,
+                                 const Trajectory& trajectory,
+                                 std::size_t bodies) {
+  const std::vector<std::size_t> instants = body_instants(info, trajectory, bodies);
   if (instants.size() < 3) return {};
   return {instants.begin() + 1, instants.end() - 1};
 }
@@ -20,15 +24,26 @@ std::vector<std::size_t> between(const Trajectory& trajectory, std::size_t bodie
 std::vector<LegendEntry> path_legend(const SceneInfo& info,
                                      const Curve& curve,
                                      const PlaneFrame& frame) {
-  const std::string ends = info.drawing.body ? "with linespoints lw 3" : "with points";
-  const std::string name = "(" + coordinate_symbol(info, axis_index(info, 0)) + ", " +
-                           coordinate_symbol(info, axis_index(info, 1)) + ")";
+  const std::string start = std::string(" lc rgb '") + TimeColors::kStart + "'";
+  const std::string goal = std::string(" lc rgb '") + TimeColors::kGoal + "'";
+  const auto body = [&](const std::string& color) {
+    return info.drawing.body ? "with lines lw 2.4" + color : std::string();
+  };
+  const std::string coordinates = "(" + coordinate_symbol(info, axis_index(info, 0)) + ", " +
+                                  coordinate_symbol(info, axis_index(info, 1)) + ")";
+  const std::string& path = info.drawing.path;
   std::vector<LegendEntry> entries = {
-      {ends + " pt 7 ps 1.1 lc rgb '" + TimeColors::kStart + "'", "start"},
-      {ends + " pt 5 ps 1.0 lc rgb '" + TimeColors::kGoal + "'", "goal"},
-      {"with lines lw 2.2 lc rgb '#a82296'", "path of " + name}};
+      {body(start), "with points pt 7 ps 1.1" + start, "start"},
+      {body(goal), "with points pt 5 ps 1.0" + goal, "goal"},
+      {"with lines lw 2.2 " + kMiddle,
+       "",
+       "path of " + (path.empty() ? "" : escaped(path) + " ") + coordinates}};
   const std::size_t wheels = other_wheels(info, *curve.trajectory, frame).size();
-  if (wheels > 0) entries.push_back({kWheelStyle, wheels == 1 ? "other wheel" : "other wheels"});
+  if (wheels > 0)
+    entries.push_back({kWheelStyle, "", wheels == 1 ? "other wheel" : "other wheels"});
+  if (info.drawing.body && !info.drawing.glyph.empty()) {
+    entries.push_back({"with lines lw 1.4 " + kMiddle, "", escaped(info.drawing.glyph)});
+  }
   return entries;
 }
 
@@ -38,6 +53,7 @@ void draw_path(Script& script,
                const PlaneFrame& frame,
                std::size_t bodies) {
   using Role = Polyline::Role;
+  constexpr int kVeil = 0x40;
   const Trajectory& trajectory = *curve.trajectory;
   const std::size_t last = trajectory.t.size() - 1;
   const double size = std::clamp(frame.box.width / 600, 0.5, 1.0);  // small panels, thin lines
@@ -46,15 +62,16 @@ void draw_path(Script& script,
   };
   const auto width = [size](double points) { return " lw " + number(size * points, 3); };
   const std::string style = "using 1:2:3 with lines lc rgb variable";
+  const std::vector<std::size_t> some = between(info, trajectory, bodies);
   const Rows path = path_rows(info, trajectory, frame);
   Plot plot(script, "plot", {frame.x.lower, frame.y.lower});
-  plot.add(lines(between(trajectory, bodies), Role::kBody, 0x70), style + width(1.2))
-      .add(lines(between(trajectory, bodies), Role::kWheel, 0x30), style + width(3.2));
+  plot.add(lines(some, Role::kBody, kVeil), style + width(1.4))
+      .add(lines(some, Role::kWheel, 0), style + width(1.1));
   for (const Rows& track : other_wheels(info, trajectory, frame)) plot.add(track, kWheelStyle);
-  plot.add(path, "using 1:2:3 with lines lc palette" + width(1.8));
+  plot.add(path, "using 1:2:3 with lines lc palette" + width(2.4));
   const auto end = [&](std::size_t row, const std::string& mark, const char* color) {
-    plot.add(lines({row}, Role::kBody, 0), style + width(3))
-        .add(lines({row}, Role::kWheel, 0), style + width(7))
+    plot.add(lines({row}, Role::kBody, 0), style + width(2.4))
+        .add(lines({row}, Role::kWheel, 0), style + width(2))
         .add({path[row]}, mark + number(1.2 * size, 3) + " lc rgb '" + color + "'")
         .add({path[row]}, mark + number(0.6 * size, 3) + " lc rgb '#ffffff'");
   };
@@ -66,18 +83,25 @@ void draw_path(Script& script,
 Picture path_picture(const SceneInfo& info, const std::vector<Curve>& curves) {
   const std::vector<Curve> shown = shown_curves(curves);
   const bool single = shown.size() == 1;
-  const Box room{0, 0, panel_width(shown.size()), single ? 520.0 : 360.0};
-  const PlaneFrame frame(PlaneExtent(info, shown), room);
+  const std::size_t bodies = single ? kBodies : kBodiesInPanel;
+  const Sheet sheet;
+  const Box room{0, 0, panel_room(shown.size(), sheet), single ? 520.0 : 360.0};
+  const PlaneFrame frame(PlaneExtent(info, shown, bodies), room);
   const auto draw = [&](Script& script, const Picture& page, const Curve& curve, const Panel& at) {
     PlaneFrame placed = frame;
-    placed.box.x = at.box.x + (at.box.width - frame.box.width) / 2;
-    placed.box.y = at.box.y;
+    placed.box = at.box;
     set_plane(script, page, info, placed);
     if (!at.left) script << "unset ylabel\n";
     if (!at.bottom) script << "unset xlabel\n";
-    draw_path(script, info, curve, placed, single ? kBodies : kBodiesInPanel);
+    draw_path(script, info, curve, placed, bodies);
   };
-  return draw_panels(info, curves, frame.box.height, path_legend(info, shown[0], frame), draw);
+  return draw_panels(info,
+                     curves,
+                     sheet,
+                     frame.box.width,
+                     frame.box.height,
+                     path_legend(info, shown[0], frame),
+                     draw);
 }
 
 }  // namespace carnot::plots

@@ -1,9 +1,9 @@
-// A path in the plane, with the body drawn at some twenty equidistant times so that the manoeuvre
-// can be read.
+// A path in the plane, with outlines of the body at a few well chosen instants, so that the
+// manoeuvre can be read.
 //
 // Time is colour, from dark blue at the start to orange at the goal; the bodies at both ends are
-// heavy and opaque, those between are thin and let others through. Both axes have one scale.
-// Several curves become panels with the same axes.
+// heavy and opaque, those between are thin and let others through, and the path is drawn on top of
+// these. Both axes have one scale. Several curves become panels with the same axes.
 #pragma once
 
 #include <vector>
@@ -14,11 +14,11 @@
 
 namespace carnot::plots {
 
-// Start, goal, path, and the other wheels if there are any.
+// Start, goal, path, and the other wheels and the body if there is something to say of them.
 std::vector<LegendEntry> path_legend(const SceneInfo& info,
                                      const Curve& curve,
                                      const PlaneFrame& frame);
-// One panel: bodies, path, both ends.
+// One panel: at most so many bodies, path, both ends.
 void draw_path(Script& script,
                const SceneInfo& info,
                const Curve& curve,

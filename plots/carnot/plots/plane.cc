@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "carnot/plots/instants.h"
+#include "carnot/scene/body.h"
+
 namespace carnot::plots {
 namespace {
 
@@ -17,6 +20,31 @@ std::vector<Polyline> body_at(const SceneInfo& info, const std::vector<double>& 
   return info.drawing.body(q.data());
 }
 
+// A wheel that is given by the ends of its diameter, from above: a narrow rectangle.
+Polyline outlined(const Polyline& line) {
+  constexpr double kWidth = 0.3;  // of the diameter
+  if (line.role != Polyline::Role::kWheel || line.points.size() != 2) return line;
+  const auto& a = line.points[0];
+  const auto& b = line.points[1];
+  const double diameter = std::hypot(b[0] - a[0], b[1] - a[1]);
+  const double heading = std::atan2(b[1] - a[1], b[0] - a[0]);
+  return {
+      line.role,
+      rectangle({a[0] / 2 + b[0] / 2, a[1] / 2 + b[1] / 2}, heading, diameter, kWidth * diameter)
+          .points};
+}
+
+// Of a wheel, which is symmetric about its axle.
+double middle_of(const Polyline& line, std::size_t i) {
+  double lower = line.points.front()[i];
+  double upper = lower;
+  for (const auto& point : line.points) {
+    lower = std::min(lower, point[i]);
+    upper = std::max(upper, point[i]);
+  }
+  return lower / 2 + upper / 2;
+}
+
 double time_fraction(const Trajectory& trajectory, std::size_t row) {
   const double span = trajectory.t.back() - trajectory.t.front();
   return span == 0 ? 0 : (trajectory.t[row] - trajectory.t.front()) / span;
@@ -28,19 +56,22 @@ std::size_t axis_index(const SceneInfo& info, std::size_t i) {
   return static_cast<std::size_t>(info.drawing.axes[i]);
 }
 
-PlaneExtent::PlaneExtent(const SceneInfo& info, const std::vector<Curve>& curves) {
+PlaneExtent::PlaneExtent(const SceneInfo& info,
+                         const std::vector<Curve>& curves,
+                         std::size_t bodies) {
+  constexpr std::size_t kAllAlong = 90;
   for (const Curve& curve : curves) {
     const Trajectory& trajectory = *curve.trajectory;
     for (const auto& q : trajectory.q) {
       x.include(q[axis_index(info, 0)]);
       y.include(q[axis_index(info, 1)]);
     }
-    for (const std::size_t i : spread(trajectory.q.size(), kBodies)) {
-      for (const Polyline& line : body_at(info, trajectory.q[i])) {
-        for (const auto& point : line.points) {
-          x.include(point[0]);
-          y.include(point[1]);
-        }
+    const std::vector<std::size_t> rows = bodies == 0 ? spread(trajectory.q.size(), kAllAlong)
+                                                      : body_instants(info, trajectory, bodies);
+    for (const std::size_t i : rows) {
+      for (const Row& point : body_points(info, trajectory.q[i])) {
+        x.include(point[0]);
+        y.include(point[1]);
       }
     }
   }
@@ -71,7 +102,7 @@ Rows body_rows(const SceneInfo& info,
     const double color = TimeColors::argb(time_fraction(trajectory, i), alpha);
     for (const Polyline& line : body_at(info, trajectory.q[i])) {
       if (line.role != role) continue;
-      for (const auto& point : line.points) {
+      for (const auto& point : outlined(line).points) {
         rows.push_back({frame.x.at(point[0]), frame.y.at(point[1]), color});
       }
       rows.push_back(gap());
@@ -101,8 +132,8 @@ std::vector<Rows> other_wheels(const SceneInfo& info,
     for (const Polyline& line : body_at(info, q)) {
       if (line.role != Polyline::Role::kWheel || line.points.empty()) continue;
       if (tracks.size() <= wheel) tracks.resize(wheel + 1), largest.resize(wheel + 1);
-      const double x = line.points.front()[0] / 2 + line.points.back()[0] / 2;
-      const double y = line.points.front()[1] / 2 + line.points.back()[1] / 2;
+      const double x = middle_of(line, 0);
+      const double y = middle_of(line, 1);
       const double off = std::hypot(x - q[axis_index(info, 0)], y - q[axis_index(info, 1)]);
       largest[wheel] = std::max(largest[wheel], off);
       tracks[wheel++].push_back({frame.x.at(x), frame.y.at(y)});

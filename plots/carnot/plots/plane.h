@@ -8,16 +8,20 @@
 
 namespace carnot::plots {
 
-constexpr std::size_t kBodies = 21;  // drawn along a path
+// Bodies drawn along a path at most, both ends included: on a page of its own, or in a panel.
+constexpr std::size_t kBodies = 9;
+constexpr std::size_t kBodiesInPanel = 7;
 
 // Which coordinate is drawn on axis 0, 1, 2.
 std::size_t axis_index(const SceneInfo& info, std::size_t axis);
 
-// What the axes of a picture in the plane must hold: the curves and all the bodies drawn.
+// What the axes of a picture in the plane must hold.
 struct PlaneExtent {
   Interval x, y;
 
-  PlaneExtent(const SceneInfo& info, const std::vector<Curve>& curves);
+  // The curves, and the bodies at their instants (see body_instants), at most so many; 0: all
+  // along.
+  PlaneExtent(const SceneInfo& info, const std::vector<Curve>& curves, std::size_t bodies);
 };
 
 // Axes for the extent, with equal scale in the largest box inside `room`; the box is returned.
@@ -29,7 +33,7 @@ struct PlaneFrame {
 };
 
 // Lines of the bodies of given role at given rows of the trajectory, in drawn coordinates: points
-// (x, y, colour), a gap after each line. `alpha` 0 is opaque.
+// (x, y, colour), a gap after each line. `alpha` 0 is opaque. Wheels are outlines.
 Rows body_rows(const SceneInfo& info,
                const Trajectory& trajectory,
                const std::vector<std::size_t>& instants,
@@ -44,4 +48,5 @@ std::vector<Rows> other_wheels(const SceneInfo& info,
                                const PlaneFrame& frame);
 // Axes, labels and grid of a panel in the plane.
 void set_plane(Script& script, const Picture& page, const SceneInfo& info, const PlaneFrame& frame);
+
 }  // namespace carnot::plots

@@ -7,16 +7,12 @@
 #include <locale>
 #include <utility>
 
+#include "carnot/plots/units.h"
+
 namespace carnot::plots {
 namespace {
 
 constexpr double kLargest = 1e150;  // gnuplot squares numbers
-
-bool drawable(const Row& row) {
-  return !row.empty() && std::all_of(row.begin(), row.end(), [](double x) {
-    return std::isfinite(x) && std::abs(x) < kLargest;
-  });
-}
 
 std::string classic(double x, int digits) {
   std::ostringstream out;
@@ -66,6 +62,7 @@ std::string quoted(const std::string& text) { return quoted_markup(escaped(text)
 std::string symbol(const std::string& name) {
   static const std::vector<std::pair<std::string, std::string>> kGreek = {{"alpha", "α"},
                                                                           {"beta", "β"},
+                                                                          {"gamma", "γ"},
                                                                           {"delta", "δ"},
                                                                           {"lambda", "λ"},
                                                                           {"phi", "φ"},
@@ -83,7 +80,17 @@ std::string symbol(const std::string& name) {
 }
 
 std::string with_unit(const std::string& symbol, const std::string& unit) {
-  return unit.empty() ? symbol : symbol + " [" + escaped(unit) + "]";
+  return unit.empty() ? symbol : symbol + " [" + unit_markup(unit) + "]";
+}
+
+double text_width(const std::string& markup) {
+  constexpr double kLetter = 7.6;
+  double letters = 0;
+  for (const char c : markup) {
+    const bool continues = (static_cast<unsigned char>(c) & 0xc0U) == 0x80U;  // of a UTF-8 letter
+    if (!continues && std::string("\\^_{}").find(c) == std::string::npos) ++letters;
+  }
+  return kLetter * letters;
 }
 
 std::string number(double x, int digits) { return classic(x, digits); }
@@ -117,13 +124,36 @@ double TimeColors::argb(double fraction, int alpha) {
   return ((alpha * 256.0 + mix(a.r, b.r)) * 256.0 + mix(a.g, b.g)) * 256.0 + mix(a.b, b.b);
 }
 
+double TimeColors::pale(double fraction) {
+  constexpr double kSteps = 63;
+  constexpr double kVeil = 0.7;
+  const double rounded = std::round(std::clamp(fraction, 0.0, 1.0) * kSteps) / kSteps;
+  const auto color = static_cast<unsigned>(argb(rounded, 0));
+  double mixed = 0;
+  for (const unsigned shift : {16U, 8U, 0U}) {
+    const double part = (color >> shift) & 0xffU;
+    mixed = mixed * 256 + std::round(part + kVeil * (255 - part));
+  }
+  return mixed;
+}
+
 Script::Script() {
   text_.imbue(std::locale::classic());
   text_.precision(15);
 }
 
+bool drawable(const Row& row) {
+  return !row.empty() && std::all_of(row.begin(), row.end(), [](double x) {
+    return std::isfinite(x) && std::abs(x) < kLargest;
+  });
+}
+
+bool drawable(const Rows& rows) {
+  return std::any_of(rows.begin(), rows.end(), [](const Row& row) { return drawable(row); });
+}
+
 std::string Script::data(const Rows& rows) {
-  if (std::none_of(rows.begin(), rows.end(), drawable)) return {};
+  if (!drawable(rows)) return {};
   const std::string name = "$d" + std::to_string(++blocks_);
   text_ << name << " << EOD\n";
   bool open = false;  // a line has begun

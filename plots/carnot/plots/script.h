@@ -17,6 +17,10 @@ using Rows = std::vector<Row>;
 // A blank row ends a line; inside Plot::add.
 inline Row gap() { return {}; }
 
+// Whether all the numbers of a row can be drawn, and whether those of any row can be.
+bool drawable(const Row& row);
+bool drawable(const Rows& rows);
+
 // 'text' as a gnuplot string that shows exactly these characters.
 std::string quoted(const std::string& text);
 // The same for text that is already in gnuplot's markup.
@@ -25,8 +29,10 @@ std::string quoted_markup(std::string text);
 std::string symbol(const std::string& name);
 // Characters as they are, in markup.
 std::string escaped(const std::string& text);
-// "symbol [unit]", markup.
+// "symbol [unit]", markup; the unit as in units.h.
 std::string with_unit(const std::string& symbol, const std::string& unit);
+// About how wide a text in markup will be, in hundredths of an inch at the size of labels.
+double text_width(const std::string& markup);
 // A number of the given significant digits, as in "%g".
 std::string number(double x, int digits = 15);
 
@@ -40,6 +46,8 @@ struct TimeColors {
   static std::string palette();
   // "0xAARRGGBB" for a fraction of the time; alpha 0 is opaque.
   static double argb(double fraction, int alpha);
+  // The colour of a fraction of the time in front of white, as through a thin veil; one of 64.
+  static double pale(double fraction);
 };
 
 class Script {

@@ -124,24 +124,13 @@ std::string style_of(const Series& series, std::size_t place) {
   }
 }
 
-// How wide a text will be, about.
-double width_of(const std::string& markup) {
-  constexpr double kLetter = 7.6;
-  double letters = 0;
-  for (const char c : markup) {
-    const bool continues = (static_cast<unsigned char>(c) & 0xc0U) == 0x80U;  // of a UTF-8 letter
-    if (!continues && std::string("\\^_{}").find(c) == std::string::npos) ++letters;
-  }
-  return kLetter * letters;
-}
-
 // What the legend takes to the right of the panel.
 double legend_width(const SeriesPanel& panel) {
   constexpr double kSample = 60;
   double widest = 0;
   if (panel.legend == Legend::kRight) {
-    for (const Series& series : panel.series) widest = std::max(widest, width_of(series.title));
-    for (const SlopeLine& line : panel.slopes) widest = std::max(widest, width_of(line.title));
+    for (const Series& series : panel.series) widest = std::max(widest, text_width(series.title));
+    for (const SlopeLine& line : panel.slopes) widest = std::max(widest, text_width(line.title));
   }
   return widest == 0 ? 0 : widest + kSample;
 }

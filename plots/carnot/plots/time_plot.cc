@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "carnot/plots/panels.h"
+#include "carnot/plots/units.h"
 
 namespace carnot::plots {
 namespace {
@@ -18,7 +19,7 @@ struct Line {
 struct TimePanel {
   std::string label;  // markup
   std::vector<Line> lines;
-  Rows zeros;  // points at the lower edge
+  Rows zeros;  // points near the lower edge
   Axis values{Interval{}};
   bool logarithmic = false;
 };
@@ -47,8 +48,8 @@ TimePanel columns(const std::string& label,
   return panel;
 }
 
-// |H(t) - H(0)| on a logarithmic axis. The line leaves out what is exactly 0; dots at the lower
-// edge stand for it.
+// |H(t) - H(0)| on a logarithmic axis. The line leaves out what is exactly 0; dots above the lower
+// edge stand for it, but for the first time, where it is 0 by definition.
 TimePanel energy(const std::vector<Curve>& curves, const std::vector<std::string>& titles) {
   TimePanel panel;
   panel.label = "energy error";
@@ -60,7 +61,7 @@ TimePanel energy(const std::vector<Curve>& curves, const std::vector<std::string
     for (std::size_t row = 0; row < trajectory.t.size(); ++row) {
       const double error = std::abs(trajectory.hamiltonian[row] - trajectory.hamiltonian.front());
       if (error == 0) {
-        panel.zeros.push_back({trajectory.t[row], 0});
+        if (row > 0) panel.zeros.push_back({trajectory.t[row], 0});
       } else {
         line.points.push_back({trajectory.t[row], error});
         range.include(std::log10(error));
@@ -72,7 +73,8 @@ TimePanel energy(const std::vector<Curve>& curves, const std::vector<std::string
   const double floor = std::floor(range.lower) - 1;
   panel.values.lower = std::pow(10.0, floor);
   panel.values.upper = std::pow(10.0, std::max(std::floor(range.upper) + 1, floor + 3));
-  for (Row& row : panel.zeros) row[1] = panel.values.lower;
+  const double lifted = floor + 0.05 * std::log10(panel.values.upper / panel.values.lower);
+  for (Row& row : panel.zeros) row[1] = std::pow(10.0, lifted);
   return panel;
 }
 
@@ -86,7 +88,7 @@ std::vector<TimePanel> panels_of(const SceneInfo& info, const Curve& curve, cons
     const std::string name = coordinate_symbol(info, i);
     const std::string unit = coordinate_unit(info, i);
     q.push_back(with_unit(name, unit));
-    p.push_back(with_unit("p_{" + name + "}", unit.empty() ? "" : "action/" + unit));
+    p.push_back(with_unit("p_{" + name + "}", momentum_unit(unit)));
   }
   for (std::size_t i = 0; i < k; ++i) {
     const std::string index = "_{" + std::to_string(i + 1) + "}";
@@ -128,13 +130,15 @@ void draw(Script& script,
     Rows points = panel.lines[i].points;
     for (Row& row : points) row[0] = times.at(row[0]);
     const std::string style = "with lines lw 1.8 " + line_color(i);
-    plot.add(points, style).key(style, panel.lines[i].title);
+    plot.add(points, style);
+    if (drawable(points)) plot.key(style, panel.lines[i].title);
   }
   if (!panel.zeros.empty()) {
     Rows points = panel.zeros;
     for (Row& row : points) row[0] = times.at(row[0]);
-    const std::string style = "with points pt 7 ps 0.35 lc rgb '#606060'";
-    plot.add(points, style).key(style, "exactly 0");
+    const std::string color = " lc rgb '#606060'";
+    plot.add(points, "with points pt 7 ps 0.35" + color);
+    plot.key("with points pt 7 ps 0.7" + color, "exactly 0");
   }
   plot.draw();
   clear_settings(script);
@@ -170,7 +174,7 @@ void draw_time_panels(Script& script,
 Picture time_picture(const SceneInfo& info, const std::vector<Curve>& curves) {
   constexpr std::size_t kMostColumns = 3;
   constexpr double kLeft = 105;    // axis label and numbers
-  constexpr double kRight = 205;   // legends
+  constexpr double kRight = 225;   // legends
   constexpr double kBelow = 65;    // axis label
   constexpr double kAbove = 75;    // title
   constexpr double kHeight = 150;  // of a panel
