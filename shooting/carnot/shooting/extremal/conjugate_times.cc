@@ -1,12 +1,12 @@
 #include "carnot/shooting/extremal/conjugate_times.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
+#include "carnot/shooting/linear/dense.h"
 #include "carnot/shooting/linear/lagrangian_plane.h"
 #include "carnot/shooting/problem/units.h"
 
@@ -35,7 +35,7 @@ class Planes {
       : dynamics_(dynamics),
         units_(units),
         s_(s),
-        inverse_(s.inverse()),
+        inverse_(lu_inverse(s)),
         corank_(corank),
         precision_(precision),
         doubt_(kRoundOff * s_.norm() * inverse_.norm()) {}

@@ -1,13 +1,11 @@
 #include "carnot/shooting/linear/lagrangian_plane.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <complex>
 #include <limits>
+
+#include "carnot/shooting/linear/dense.h"
 
 namespace carnot {
 
@@ -27,9 +25,8 @@ Phases phases_of(const MatrixXd& plane) {
   Phases phases;
   double best = std::numeric_limits<double>::infinity();
   for (const double angle : kCombinations) {
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(std::cos(angle) * real +
-                                                         std::sin(angle) * imaginary);
-    const MatrixXd& v = solver.eigenvectors();
+    const MatrixXd v =
+        symmetric_eigen(std::cos(angle) * real + std::sin(angle) * imaginary).vectors;
     const MatrixXd a = v.transpose() * real * v;
     const MatrixXd b = v.transpose() * imaginary * v;
     const double mixed = (a - MatrixXd(a.diagonal().asDiagonal())).cwiseAbs().maxCoeff() +
@@ -43,23 +40,16 @@ Phases phases_of(const MatrixXd& plane) {
   std::sort(phases.angles.data(), phases.angles.data() + n, [](double a, double b) {
     return std::abs(a) < std::abs(b);
   });
-  const Eigen::MatrixXcd unitary =
-      p.cast<std::complex<double>>() + std::complex<double>(0, 1) * x.cast<std::complex<double>>();
-  phases.turn = std::arg(unitary.determinant());
+  phases.turn = argument_of_determinant(p, x);
   return phases;
-}
-
-MatrixXd orthonormal(const MatrixXd& columns) {
-  const Eigen::HouseholderQR<MatrixXd> qr(columns);
-  return qr.householderQ() * MatrixXd::Identity(columns.rows(), columns.cols());
 }
 
 Graph graph_of(const MatrixXd& plane) {
   constexpr double kZero = 1e-13;  // relative; smaller ones are round-off
   const auto n = plane.cols();
-  const MatrixXd ratio = plane.topRows(n) * plane.bottomRows(n).partialPivLu().inverse();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(0.5 * (ratio + ratio.transpose()));
-  VectorXd root = solver.eigenvalues().cwiseAbs();
+  const MatrixXd ratio = plane.topRows(n) * lu_inverse(plane.bottomRows(n));
+  const SymmetricEigen eigen = symmetric_eigen(0.5 * (ratio + ratio.transpose()));
+  VectorXd root = eigen.values.cwiseAbs();
   const double largest = root.maxCoeff();
   Graph graph;
   for (double& value : root) {
@@ -70,7 +60,7 @@ Graph graph_of(const MatrixXd& plane) {
   }
   graph.regularity = root.minCoeff() / largest;
   root = root.cwiseSqrt();
-  graph.balance = solver.eigenvectors() * root.asDiagonal() * solver.eigenvectors().transpose();
+  graph.balance = eigen.vectors * root.asDiagonal() * eigen.vectors.transpose();
   return graph;
 }
 

@@ -18,9 +18,6 @@ struct Phases {
 // `plane` is 2n x n with orthonormal columns.
 Phases phases_of(const Eigen::MatrixXd& plane);
 
-// An orthonormal basis of the plane that the columns span.
-Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns);
-
 // What X P^-1, a symmetric matrix, says of a plane.
 struct Graph {
   int kernel = 0;           // dimension of the kernel of X, up to round-off

@@ -1,9 +1,9 @@
 #include "carnot/shooting/problem/units.h"
 
-#include <Eigen/LU>
 #include <cmath>
 #include <vector>
 
+#include "carnot/shooting/linear/dense.h"
 #include "carnot/shooting/problem/dilation.h"
 #include "carnot/shooting/problem/scales.h"
 
@@ -39,7 +39,7 @@ Units::Units(const BoundaryValueProblem& problem, const double* p0) {
   for (int j = 0; j < n; ++j) {
     e_.col(j) = unit * std::pow(length / unit, dilation->weights()[j]) * dilation->basis().col(j);
   }
-  inverse_ = e_.inverse();
+  inverse_ = lu_inverse(e_);
   c_ = length * length / problem.time;
   scaled_ = true;
 }
