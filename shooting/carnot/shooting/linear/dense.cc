@@ -12,6 +12,8 @@ namespace carnot {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+MatrixXd product(const MatrixXd& a, const MatrixXd& b) { return a * b; }
+
 VectorXd lu_solve(const MatrixXd& a, const VectorXd& b) { return a.partialPivLu().solve(b); }
 
 MatrixXd lu_inverse(const MatrixXd& a) { return a.partialPivLu().inverse(); }

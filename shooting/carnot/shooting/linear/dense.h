@@ -16,6 +16,9 @@ using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostSmall, 1>;
 using SmallMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostSmall, kMostSmall>;
 
+// A B, so that Eigen's product of large matrices is instantiated once, too.
+Eigen::MatrixXd product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+
 // A^-1 b and A^-1, by LU factors with partial pivoting.
 Eigen::VectorXd lu_solve(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 Eigen::MatrixXd lu_inverse(const Eigen::MatrixXd& a);

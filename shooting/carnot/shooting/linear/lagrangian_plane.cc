@@ -19,16 +19,16 @@ Phases phases_of(const MatrixXd& plane) {
   const auto n = plane.cols();
   const auto x = plane.topRows(n);
   const auto p = plane.bottomRows(n);
-  const MatrixXd real = p * p.transpose() - x * x.transpose();
-  const MatrixXd cross = p * x.transpose();
+  const MatrixXd real = product(p, p.transpose()) - product(x, x.transpose());
+  const MatrixXd cross = product(p, x.transpose());
   const MatrixXd imaginary = cross + cross.transpose();
   Phases phases;
   double best = std::numeric_limits<double>::infinity();
   for (const double angle : kCombinations) {
     const MatrixXd v =
         symmetric_eigen(std::cos(angle) * real + std::sin(angle) * imaginary).vectors;
-    const MatrixXd a = v.transpose() * real * v;
-    const MatrixXd b = v.transpose() * imaginary * v;
+    const MatrixXd a = product(product(v.transpose(), real), v);
+    const MatrixXd b = product(product(v.transpose(), imaginary), v);
     const double mixed = (a - MatrixXd(a.diagonal().asDiagonal())).cwiseAbs().maxCoeff() +
                          (b - MatrixXd(b.diagonal().asDiagonal())).cwiseAbs().maxCoeff();
     if (!(mixed < best)) continue;
@@ -47,7 +47,7 @@ Phases phases_of(const MatrixXd& plane) {
 Graph graph_of(const MatrixXd& plane) {
   constexpr double kZero = 1e-13;  // relative; smaller ones are round-off
   const auto n = plane.cols();
-  const MatrixXd ratio = plane.topRows(n) * lu_inverse(plane.bottomRows(n));
+  const MatrixXd ratio = product(plane.topRows(n), lu_inverse(plane.bottomRows(n)));
   const SymmetricEigen eigen = symmetric_eigen(0.5 * (ratio + ratio.transpose()));
   VectorXd root = eigen.values.cwiseAbs();
   const double largest = root.maxCoeff();
@@ -60,7 +60,7 @@ Graph graph_of(const MatrixXd& plane) {
   }
   graph.regularity = root.minCoeff() / largest;
   root = root.cwiseSqrt();
-  graph.balance = eigen.vectors * root.asDiagonal() * eigen.vectors.transpose();
+  graph.balance = product(eigen.vectors * root.asDiagonal(), eigen.vectors.transpose());
   return graph;
 }
 

@@ -48,19 +48,19 @@ MatrixXd Units::map(const MatrixXd& m) const {
   if (!scaled_) return m;
   const auto n = e_.rows();
   MatrixXd scaled(2 * n, 2 * n);
-  scaled.leftCols(n) = m.leftCols(n) * e_;
-  scaled.rightCols(n) = c_ * m.rightCols(n) * inverse_.transpose();
-  scaled.topRows(n) = inverse_ * scaled.topRows(n).eval();
-  scaled.bottomRows(n) = e_.transpose() * scaled.bottomRows(n).eval() / c_;
+  scaled.leftCols(n) = product(m.leftCols(n), e_);
+  scaled.rightCols(n) = c_ * product(m.rightCols(n), inverse_.transpose());
+  scaled.topRows(n) = product(inverse_, scaled.topRows(n));
+  scaled.bottomRows(n) = product(e_.transpose(), scaled.bottomRows(n)) / c_;
   return scaled;
 }
 
 MatrixXd Units::tangent(const MatrixXd& columns) const {
   if (!scaled_) return columns;
   const auto n = e_.rows();
-  MatrixXd scaled = c_ * columns * inverse_.transpose();
-  scaled.topRows(n) = inverse_ * scaled.topRows(n).eval();
-  scaled.bottomRows(n) = e_.transpose() * scaled.bottomRows(n).eval() / c_;
+  MatrixXd scaled = c_ * product(columns, inverse_.transpose());
+  scaled.topRows(n) = product(inverse_, scaled.topRows(n));
+  scaled.bottomRows(n) = product(e_.transpose(), scaled.bottomRows(n)) / c_;
   return scaled;
 }
 
@@ -73,7 +73,7 @@ VectorXd Units::displacement(const VectorXd& q) const {
 }
 
 MatrixXd Units::momenta(const MatrixXd& p) const {
-  return scaled_ ? MatrixXd(c_ * inverse_.transpose() * p) : p;
+  return scaled_ ? MatrixXd(c_ * product(inverse_.transpose(), p)) : p;
 }
 
 }  // namespace carnot
