@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 using Eigen::MatrixXd;
@@ -133,4 +133,4 @@ TEST(Dense, LeastSquaresHaveTheLeastNorm) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -13,7 +13,7 @@
 #include "shooting/problems.h"
 #include "testing/failing_scenes.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 constexpr long kSteps = 32;
@@ -135,4 +135,4 @@ TEST(Failure, NamesDiffer) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -8,10 +8,11 @@
 #include <vector>
 
 #include "carnot/shooting/extremal/verification.h"
+#include "carnot/shooting/problem/origin.h"
 #include "carnot/shooting/problem/problem_line.h"
 #include "shooting/problems.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -89,4 +90,4 @@ TEST(Symmetry, AGeneralProblemHasNone) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -1,5 +1,4 @@
 // Verification, classification and the search for all extremals.
-#include "carnot/shooting/find_geodesics.h"
 #include "carnot/shooting/extremal/verification.h"
 
 #include <gtest/gtest.h>
@@ -8,12 +7,13 @@
 #include <numbers>
 
 #include "carnot/shooting/extremal/classification.h"
+#include "carnot/shooting/find_geodesics.h"
 #include "carnot/shooting/search/sweep.h"
 #include "carnot/shooting/shoot/end_point.h"
 #include "carnot/shooting/shoot/survey.h"
 #include "shooting/problems.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -148,4 +148,4 @@ TEST(Search, KeepsOneMemberOfAFamily) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::internal

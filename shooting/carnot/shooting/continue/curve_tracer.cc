@@ -9,7 +9,7 @@
 #include "carnot/shooting/shoot/end_point.h"
 #include "carnot/shooting/shoot/survey.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 using Eigen::VectorXd;
@@ -252,4 +252,4 @@ void CurveTracer::note_crossing(const CurvePoint& before, const VectorXd& x) {
   crossings_.push_back(std::move(crossing));
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -6,7 +6,7 @@
 
 #include "carnot/shooting/linear/dense.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 using Eigen::MatrixXd;
@@ -162,4 +162,4 @@ std::optional<VectorXd> SolutionCurve::other_direction(const VectorXd& x, const 
   return direction.normalized();
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

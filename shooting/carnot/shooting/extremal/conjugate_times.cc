@@ -10,7 +10,7 @@
 #include "carnot/shooting/linear/lagrangian_plane.h"
 #include "carnot/shooting/problem/units.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 using Eigen::MatrixXd;
@@ -270,4 +270,4 @@ ConjugateTimes conjugate_times(const BoundaryValueProblem& problem,
   return coarse;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -9,7 +9,7 @@
 #include "carnot/shooting/shoot/multiple_shooting.h"
 #include "carnot/shooting/shoot/survey.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 constexpr int kPathIntervals = 32;
@@ -183,4 +183,4 @@ bool same_family(const Extremal& a, const Extremal& b) {
   return a.singular && b.singular && apart <= kSameAction * std::abs(a.geodesic.action);
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -14,7 +14,7 @@
 #include "carnot/shooting/reason.h"
 #include "carnot/shooting/shoot/knots.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 // A verified extremal, its knots, and where it is at equidistant times to tell it from others.
 struct Extremal {
@@ -40,4 +40,4 @@ bool same(const Extremal& a, const Extremal& b);
 // Both singular and of equal action: one continuous family, of which one member is enough.
 bool same_family(const Extremal& a, const Extremal& b);
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <complex>
 
-namespace carnot {
+namespace carnot::internal {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -89,4 +89,4 @@ VectorXd least_squares(const MatrixXd& a, const VectorXd& b, double threshold) {
   return decomposition.solve(b);
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -8,7 +8,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-namespace carnot {
+namespace carnot::internal {
 
 // Matrices of at most kMostSmall rows and columns, which need no allocation.
 inline constexpr int kMostSmall = 16;
@@ -71,4 +71,4 @@ RightSingular right_singular(const Eigen::MatrixXd& a);
 // one count as zero; by a complete orthogonal decomposition.
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, double threshold);
 
-}  // namespace carnot
+}  // namespace carnot::internal

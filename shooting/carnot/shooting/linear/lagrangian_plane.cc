@@ -7,7 +7,7 @@
 
 #include "carnot/shooting/linear/dense.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -64,4 +64,4 @@ Graph graph_of(const MatrixXd& plane) {
   return graph;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

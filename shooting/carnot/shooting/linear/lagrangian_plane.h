@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-namespace carnot {
+namespace carnot::internal {
 
 struct Phases {
   Eigen::VectorXd angles;  // theta_j in (-pi, pi], smallest |theta_j| first
@@ -27,4 +27,4 @@ struct Graph {
 
 Graph graph_of(const Eigen::MatrixXd& plane);
 
-}  // namespace carnot
+}  // namespace carnot::internal

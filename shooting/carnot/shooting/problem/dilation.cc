@@ -7,7 +7,7 @@
 #include "carnot/shooting/linear/dense.h"
 #include "carnot/shooting/problem/scales.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 using Eigen::MatrixXd;
@@ -176,4 +176,4 @@ double Dilation::gauge(const VectorXd& y) const {
   return largest;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -7,7 +7,7 @@
 #include "carnot/shooting/problem/dilation.h"
 #include "carnot/shooting/problem/scales.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 using Eigen::MatrixXd;
@@ -76,4 +76,4 @@ MatrixXd Units::momenta(const MatrixXd& p) const {
   return scaled_ ? MatrixXd(c_ * product(inverse_.transpose(), p)) : p;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

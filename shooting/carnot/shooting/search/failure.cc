@@ -9,7 +9,7 @@
 #include "carnot/shooting/linear/dense.h"
 #include "carnot/shooting/shoot/end_point.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 constexpr long kSteps = 256;  // of the flow from the momentum of a discrete extremal
@@ -154,4 +154,4 @@ Failure explain_failure(const BoundaryValueProblem& problem,
                    : "try a larger --tolerance, more --starts or another --seed")};
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

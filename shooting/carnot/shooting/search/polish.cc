@@ -8,7 +8,7 @@
 #include "carnot/shooting/shoot/end_point.h"
 #include "carnot/shooting/shoot/multiple_shooting.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 constexpr int kSegments = 8;    // at least; divides the intervals of a path
@@ -127,4 +127,4 @@ std::optional<Extremal> polish(const BoundaryValueProblem& problem,
   return std::nullopt;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -9,7 +9,7 @@
 #include "carnot/shooting/path/path.h"
 #include "carnot/shooting/shoot/knots.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 // Refines the path (refinement.h) and joins the knots on it (multiple_shooting.h): as many of them,
 // and as many steps, as the tangent flow asks for; where that fails, shoots along it. Nothing when
@@ -32,4 +32,4 @@ std::optional<Extremal> shoot_along(const BoundaryValueProblem& problem,
                                     const GeodesicOptions& options,
                                     const Path& path);
 
-}  // namespace carnot
+}  // namespace carnot::internal

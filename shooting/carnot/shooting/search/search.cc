@@ -9,7 +9,7 @@
 #include "carnot/shooting/extremal/ranking.h"
 #include "carnot/shooting/search/polish.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 constexpr int kRound = 8;  // starts between two looks at the list
@@ -268,4 +268,4 @@ bool Search::same_nodes(const Path& a, const Path& b) {
   return apart <= kSame * extent;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -18,7 +18,7 @@
 #include "carnot/shooting/search/near_target.h"
 #include "carnot/shooting/shoot/knots.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 class Search {
  public:
@@ -155,4 +155,4 @@ class Search {
   int converged_ = 0;
 };
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -16,7 +16,7 @@
 #include "carnot/shooting/search/sweep.h"
 #include "carnot/shooting/shoot/multiple_shooting.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 constexpr int kMaxIntervals = 128;  // of the grids that paths are relaxed on
@@ -196,4 +196,4 @@ Search::Candidate Search::relax_start(int i) const {
   return candidate;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -6,7 +6,7 @@
 
 #include "carnot/shooting/linear/dense.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 double largest_difference(const double* a, const double* b, int count) {
   double largest = 0;
@@ -125,4 +125,4 @@ void reduce(const BoundaryValueProblem& problem,
   tangent = there;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

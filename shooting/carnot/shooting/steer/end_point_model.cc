@@ -5,7 +5,7 @@
 
 #include "carnot/shooting/shoot/end_point.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 constexpr long kSteps = 64;
@@ -103,4 +103,4 @@ EndPointModel::Prediction EndPointModel::move_end(const Vector& change) const {
   return reached;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -6,7 +6,7 @@
 #include "carnot/shooting/boundary_value_problem.h"
 #include "carnot/shooting/linear/dense.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 class EndPointModel {
  public:
@@ -40,4 +40,4 @@ class EndPointModel {
   std::vector<Matrix> twist_;  // d2J/dp_i dp_j, i <= j: 00, 01, 11, 02, ..; twice that for i < j
 };
 
-}  // namespace carnot
+}  // namespace carnot::internal
