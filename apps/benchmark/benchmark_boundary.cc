@@ -68,7 +68,7 @@ BoundarySolver from_paths(const std::string& minimiser) {
     std::optional<Extremal> extremal;
     (void)relax(problem, start.relaxation, start.path);
     if (tighten(problem, {}, start.path).converged) {
-      extremal = polish(problem, options, start.path);
+      extremal = polish(problem, options, start.path).extremal;
     }
     return trial_of(extremal, began);
   };
@@ -87,7 +87,7 @@ BoundarySolver from_momenta(const std::string& minimiser) {
     Knots knots = knots_of(problem, p0, kSegments, kSteps);
     std::optional<Extremal> extremal;
     if (shoot(problem, shooting, knots).converged) {
-      extremal = verify(problem, std::move(knots), kSteps, GeodesicOptions{}.tolerance);
+      extremal = verify(problem, std::move(knots), kSteps, GeodesicOptions{}.tolerance).extremal;
     }
     return trial_of(extremal, began);
   };

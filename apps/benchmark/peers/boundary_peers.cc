@@ -26,8 +26,11 @@ BoundaryTrial run_gsl(const BoundaryValueProblem& problem, std::uint64_t seed, i
   std::vector<double> p0 = internal::momentum_start(problem, seed, i + 1);
   BoundaryTrial trial;
   if (solve_with_gsl(problem, p0)) {
-    const auto extremal = internal::verify(
-        problem, internal::knots_of(problem, p0, 1, kSteps), kSteps, GeodesicOptions{}.tolerance);
+    const auto extremal = internal::verify(problem,
+                                           internal::knots_of(problem, p0, 1, kSteps),
+                                           kSteps,
+                                           GeodesicOptions{}.tolerance)
+                              .extremal;
     trial.solved = extremal.has_value();
     if (extremal) trial.action = extremal->geodesic.action;
   }
