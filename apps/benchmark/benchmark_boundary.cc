@@ -5,6 +5,7 @@
 
 #include "benchmark/benchmark_clock.h"
 #include "carnot/numerics/parallel.h"
+#include "carnot/shooting/find_geodesics.h"
 #include "carnot/shooting/path/discrete_newton.h"
 #include "carnot/shooting/path/relaxation.h"
 #include "carnot/shooting/search/momentum_starts.h"
@@ -17,6 +18,19 @@
 
 namespace carnot::apps {
 namespace {
+
+using internal::Extremal;
+using internal::Knots;
+using internal::knots_of;
+using internal::make_start;
+using internal::momentum_start;
+using internal::polish;
+using internal::relax;
+using internal::shoot;
+using internal::ShootingOptions;
+using internal::Start;
+using internal::tighten;
+using internal::verify;
 
 constexpr double kSameAction = 1e-9;          // relative
 constexpr double kSameDiscreteAction = 1e-6;  // of solvers that stay on their grid
@@ -54,7 +68,7 @@ BoundarySolver from_paths(const std::string& minimiser) {
     std::optional<Extremal> extremal;
     (void)relax(problem, start.relaxation, start.path);
     if (tighten(problem, {}, start.path).converged) {
-      extremal = polish(problem, options, start.path);
+      extremal = polish(problem, options, start.path).extremal;
     }
     return trial_of(extremal, began);
   };
@@ -73,7 +87,7 @@ BoundarySolver from_momenta(const std::string& minimiser) {
     Knots knots = knots_of(problem, p0, kSegments, kSteps);
     std::optional<Extremal> extremal;
     if (shoot(problem, shooting, knots).converged) {
-      extremal = verify(problem, std::move(knots), kSteps, GeodesicOptions{}.tolerance);
+      extremal = verify(problem, std::move(knots), kSteps, GeodesicOptions{}.tolerance).extremal;
     }
     return trial_of(extremal, began);
   };

@@ -26,7 +26,7 @@ inline std::vector<double> random_target(const Dynamics& dynamics, std::uint64_t
       const double reach = coordinate.period > 0 ? std::numbers::pi : kReach;
       to.push_back(std::uniform_real_distribution<double>(-reach, reach)(random));
     }
-  } while (!bring_to_manifold(dynamics, to.data()) ||
+  } while (!internal::bring_to_manifold(dynamics, to.data()) ||
            dynamics.chart(origin.data()) * dynamics.chart(to.data()) < 0);
   return to;
 }

@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
@@ -51,4 +51,4 @@ TEST(BandedCholesky, RefusesWhatIsNotPositiveDefinite) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::internal

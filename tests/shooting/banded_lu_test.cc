@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
@@ -54,4 +54,4 @@ TEST(BandedLu, RefusesWhatIsNotANumber) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::internal

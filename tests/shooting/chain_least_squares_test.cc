@@ -7,7 +7,7 @@
 #include <iterator>
 #include <vector>
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 constexpr double kTight = 1e-12;
@@ -114,4 +114,4 @@ TEST(ChainLeastSquares, KeepsWithinWhereTheResidualsExist) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -8,7 +8,7 @@
 #include "shooting/problems.h"
 #include "testing/reference.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -167,4 +167,4 @@ TEST(ConjugateTimes, StraightAheadHasNone) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::internal

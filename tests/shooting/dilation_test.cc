@@ -10,7 +10,7 @@
 
 #include "shooting/problems.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 using Eigen::VectorXd;
@@ -80,4 +80,4 @@ TEST(Dilation, NothingWhereTheFrameIsSingular) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -11,7 +11,7 @@
 #include "carnot/shooting/shoot/end_point.h"
 #include "shooting/problems.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 using Vector = EndPointModel::Vector;
@@ -94,4 +94,4 @@ TEST(EndPointModel, HasNoInverseAtAConjugatePoint) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::internal

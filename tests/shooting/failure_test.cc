@@ -13,7 +13,7 @@
 #include "shooting/problems.h"
 #include "testing/failing_scenes.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 constexpr long kSteps = 32;
@@ -85,26 +85,26 @@ TEST(Failure, NotRefined) {
   const BoundaryValueProblem problem = test::sideways();
   Path path = straight_path(problem, 8);
   path.q[path.dof + 1] = std::nan("");
-  Reason reason = Reason::kNone;
-  EXPECT_FALSE(polish(problem, {}, path, &reason));
-  EXPECT_EQ(reason, Reason::kNotRefined);
+  const Outcome outcome = polish(problem, {}, path);
+  EXPECT_FALSE(outcome.extremal);
+  EXPECT_EQ(outcome.reason, Reason::kNotRefined);
 }
 
 // The straight line is a discrete extremal, but leads where the mass is negative.
 TEST(Failure, FlowFailed) {
   const BoundaryValueProblem problem(
       make_dynamics(test::OneByOne<test::FadingMass>{}), {1, 0, 0}, {-1, 0, 0});
-  Reason reason = Reason::kNone;
-  EXPECT_FALSE(polish(problem, {}, straight_path(problem, 32), &reason));
-  EXPECT_EQ(reason, Reason::kFlowFailed);
+  const Outcome outcome = polish(problem, {}, straight_path(problem, 32));
+  EXPECT_FALSE(outcome.extremal);
+  EXPECT_EQ(outcome.reason, Reason::kFlowFailed);
 }
 
 TEST(Failure, NotJoined) {
   const BoundaryValueProblem problem = test::sideways();
-  Reason reason = Reason::kNone;
   const Knots astray = knots_of(problem, {300, -200, 100, 500}, 1, kSteps);
-  EXPECT_FALSE(polish(problem, {}, astray, &reason));
-  EXPECT_EQ(reason, Reason::kNotJoined);
+  const Outcome outcome = polish(problem, {}, astray);
+  EXPECT_FALSE(outcome.extremal);
+  EXPECT_EQ(outcome.reason, Reason::kNotJoined);
 }
 
 // The midpoint rule does not reach the tolerance with the steps that verification affords.
@@ -135,4 +135,4 @@ TEST(Failure, NamesDiffer) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "carnot/shooting/find_geodesics.h"
+#include "carnot/shooting/problem/origin.h"
 #include "carnot/shooting/problem/problem_line.h"
 #include "shooting/problems.h"
 
@@ -294,7 +295,7 @@ TEST(Geodesic, CyclicCoordinatesCostNoDigits) {
     const GeodesicReport near = find(here);
     ASSERT_FALSE(near.geodesics.empty());
     BoundaryValueProblem there = here;
-    for (const int j : movable(here.dynamics.info)) {
+    for (const int j : internal::movable(here.dynamics.info)) {
       there.from[j] += kFar;
       there.to[j] += kFar;
     }

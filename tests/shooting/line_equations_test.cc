@@ -7,7 +7,7 @@
 
 #include "shooting/problems.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 // A central difference: eps^(2/3) of round-off and truncation, magnified by the growth of the flow.
@@ -65,4 +65,4 @@ TEST(LineEquations, DoNotLeaveTheLine) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -8,7 +8,7 @@
 #include "carnot/shooting/shoot/shooting_equations.h"
 #include "shooting/problems.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 // The extremal of the general problem of the parking reference, to a few digits.
@@ -43,7 +43,7 @@ TEST(ShootingEquations, JacobianIsThatOfTheResidual) {
 TEST(MultipleShooting, SegmentsAndMinimisersAgree) {
   const BoundaryValueProblem problem = test::vehicle({0, 0, 0, 0}, {2, 1, 0.5, 0.5});
   std::vector<std::vector<double>> found;
-  for (const std::string& minimiser : minimisers()) {
+  for (const std::string& minimiser : names_of_minimisers()) {
     for (const int segments : {1, 2, 8}) {
       SCOPED_TRACE(minimiser + ", " + std::to_string(segments) + " segments");
       Knots knots = knots_of(problem, kRoughP0, segments, 32);
@@ -71,7 +71,7 @@ TEST(MultipleShooting, EndsWithTheFlowOfTheLastKnot) {
 
 TEST(MultipleShooting, GivesUpWhereThereIsNothingNear) {
   const BoundaryValueProblem problem = test::sideways();
-  for (const std::string& minimiser : minimisers()) {
+  for (const std::string& minimiser : names_of_minimisers()) {
     Knots knots = knots_of(problem, {1e3, -1e3, 1e3, 1e3}, 1, 32);
     ShootingOptions options;
     options.minimiser = minimiser;
@@ -83,7 +83,7 @@ TEST(MultipleShooting, GivesUpWhereThereIsNothingNear) {
 // Every way joins the knots of an extremal that is known to a few digits.
 TEST(Shooting, EveryMinimiserArrives) {
   const BoundaryValueProblem problem = test::vehicle({0, 0, 0, 0}, {2, 1, 0.5, 0.5});
-  for (const std::string& name : minimisers()) {
+  for (const std::string& name : names_of_minimisers()) {
     Knots knots = knots_of(problem, kRoughP0, 4, 16);
     ShootingOptions options;
     options.minimiser = name;
@@ -94,4 +94,4 @@ TEST(Shooting, EveryMinimiserArrives) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::internal

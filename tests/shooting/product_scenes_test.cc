@@ -18,7 +18,7 @@
 #include "catalogue/scene_choice.h"
 #include "shooting/problems.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -274,4 +274,4 @@ TEST(PlateBallQuaternion, ReachesEveryAttitude) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::internal

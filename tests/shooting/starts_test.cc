@@ -7,7 +7,7 @@
 
 #include "shooting/problems.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
@@ -69,4 +69,4 @@ TEST(Starts, GrowWithTheTarget) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::internal

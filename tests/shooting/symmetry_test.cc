@@ -8,10 +8,11 @@
 #include <vector>
 
 #include "carnot/shooting/extremal/verification.h"
+#include "carnot/shooting/problem/origin.h"
 #include "carnot/shooting/problem/problem_line.h"
 #include "shooting/problems.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -21,13 +22,13 @@ void expect_partners(const BoundaryValueProblem& problem,
                      const std::vector<double>& p0,
                      std::size_t symmetries) {
   constexpr double kTolerance = 1e-10;
-  const auto extremal = verify(problem, knots_of(problem, p0, 8, 32), 32, kTolerance);
+  const auto extremal = verify(problem, knots_of(problem, p0, 8, 32), 32, kTolerance).extremal;
   ASSERT_TRUE(extremal);
   const std::vector<ProblemSymmetry> list = symmetries_of(problem);
   EXPECT_EQ(list.size(), symmetries);
   for (const ProblemSymmetry& symmetry : list) {
     const Knots image = partner(problem.dynamics.info, symmetry, extremal->knots);
-    const auto other = verify(problem, image, 32, kTolerance);
+    const auto other = verify(problem, image, 32, kTolerance).extremal;
     ASSERT_TRUE(other);
     const double action = extremal->geodesic.action;
     EXPECT_NEAR(other->geodesic.action, action, 1e-10 * action);
@@ -89,4 +90,4 @@ TEST(Symmetry, AGeneralProblemHasNone) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::internal

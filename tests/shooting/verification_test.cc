@@ -1,5 +1,4 @@
 // Verification, classification and the search for all extremals.
-#include "carnot/shooting/find_geodesics.h"
 #include "carnot/shooting/extremal/verification.h"
 
 #include <gtest/gtest.h>
@@ -8,12 +7,13 @@
 #include <numbers>
 
 #include "carnot/shooting/extremal/classification.h"
+#include "carnot/shooting/find_geodesics.h"
 #include "carnot/shooting/search/sweep.h"
 #include "carnot/shooting/shoot/end_point.h"
 #include "carnot/shooting/shoot/survey.h"
 #include "shooting/problems.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -25,7 +25,7 @@ const std::vector<double> kSidewaysP0{
 TEST(Verification, AcceptsWhatArrives) {
   const BoundaryValueProblem problem = test::sideways();
   const auto extremal =
-      verify(problem, knots_of(problem, kSidewaysP0, 8, kSteps), kSteps, kTolerance);
+      verify(problem, knots_of(problem, kSidewaysP0, 8, kSteps), kSteps, kTolerance).extremal;
   ASSERT_TRUE(extremal);
   EXPECT_EQ(extremal->geodesic.verification, Verification::kSingle);
   EXPECT_LE(extremal->geodesic.endpoint_error, kTolerance);
@@ -40,20 +40,24 @@ TEST(Verification, AcceptsWhatArrives) {
 TEST(Verification, RefusesWhatDoesNotArrive) {
   const BoundaryValueProblem problem = test::sideways();
   const Knots astray = knots_of(problem, {300, -200, 100, 500}, 1, kSteps);
-  EXPECT_FALSE(verify(problem, astray, kSteps, kTolerance));
+  const Outcome outcome = verify(problem, astray, kSteps, kTolerance);
+  EXPECT_FALSE(outcome.extremal);
+  EXPECT_GE(outcome.reason, Reason::kFlowFailed);
 }
 
 TEST(Verification, AToleranceOutOfReachIsRefused) {
   const BoundaryValueProblem problem = test::sideways();
   const Knots knots = knots_of(problem, kSidewaysP0, 8, kSteps);
-  EXPECT_FALSE(verify(problem, knots, kSteps, 1e-20));
+  const Outcome outcome = verify(problem, knots, kSteps, 1e-20);
+  EXPECT_FALSE(outcome.extremal);
+  EXPECT_EQ(outcome.reason, Reason::kBeyondDouble);
 }
 
 TEST(Verification, AbnormalExtremalsGetTheCovectorOfLeastNorm) {
   const BoundaryValueProblem problem = test::vehicle({0, 0, 0, 0}, {0, 0, 0, kPi / 2});
   // Steering in place with some of the abnormal covector (sin theta, -cos theta, length, 0) added.
   const Knots knots = knots_of(problem, {0, -3, 3, kPi / 2}, 1, kSteps);
-  auto extremal = verify(problem, knots, kSteps, kTolerance);
+  auto extremal = verify(problem, knots, kSteps, kTolerance).extremal;
   ASSERT_TRUE(extremal);
   EXPECT_TRUE(extremal->singular);
   EXPECT_NEAR(extremal->geodesic.p0[1], 0, 1e-12);
@@ -70,7 +74,7 @@ TEST(Verification, AFamilyIsSingular) {
   std::vector<Extremal> members;
   for (const double direction : {0.0, 1.0}) {
     const std::vector<double> p0{speed * std::cos(direction), speed * std::sin(direction), 2 * kPi};
-    auto extremal = verify(problem, knots_of(problem, p0, 1, kSteps), kSteps, kTolerance);
+    auto extremal = verify(problem, knots_of(problem, p0, 1, kSteps), kSteps, kTolerance).extremal;
     ASSERT_TRUE(extremal);
     complete(problem, 0, *extremal);
     EXPECT_EQ(extremal->geodesic.label, Label::kSingular);
@@ -148,4 +152,4 @@ TEST(Search, KeepsOneMemberOfAFamily) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::internal

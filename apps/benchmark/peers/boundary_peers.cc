@@ -2,6 +2,7 @@
 
 #include "benchmark/benchmark_clock.h"
 #include "carnot/shooting/extremal/verification.h"
+#include "carnot/shooting/geodesic_options.h"
 #include "carnot/shooting/search/momentum_starts.h"
 #include "carnot/shooting/search/starts.h"
 
@@ -11,7 +12,7 @@ namespace {
 BoundaryTrial run_ipopt(const BoundaryValueProblem& problem, std::uint64_t seed, int i) {
   constexpr int kIntervals = 50;
   const double began = thread_seconds();
-  Start start = make_start(problem, seed, i + 1, kIntervals);
+  internal::Start start = internal::make_start(problem, seed, i + 1, kIntervals);
   BoundaryTrial trial;
   trial.solved =
       solve_with_ipopt(problem.dynamics, problem.time / kIntervals, start.path.q, trial.action);
@@ -22,11 +23,14 @@ BoundaryTrial run_ipopt(const BoundaryValueProblem& problem, std::uint64_t seed,
 BoundaryTrial run_gsl(const BoundaryValueProblem& problem, std::uint64_t seed, int i) {
   constexpr long kSteps = 32;
   const double began = thread_seconds();
-  std::vector<double> p0 = momentum_start(problem, seed, i + 1);
+  std::vector<double> p0 = internal::momentum_start(problem, seed, i + 1);
   BoundaryTrial trial;
   if (solve_with_gsl(problem, p0)) {
-    const auto extremal =
-        verify(problem, knots_of(problem, p0, 1, kSteps), kSteps, GeodesicOptions{}.tolerance);
+    const auto extremal = internal::verify(problem,
+                                           internal::knots_of(problem, p0, 1, kSteps),
+                                           kSteps,
+                                           GeodesicOptions{}.tolerance)
+                              .extremal;
     trial.solved = extremal.has_value();
     if (extremal) trial.action = extremal->geodesic.action;
   }

@@ -5,8 +5,12 @@
 #include <stdexcept>
 
 #include "carnot/shooting/continue/curve_tracer.h"
+#include "carnot/shooting/problem/origin.h"
 
 namespace carnot {
+
+using namespace internal;
+
 namespace {
 
 constexpr int kFirstSegments = 8;  // where the start was verified at knots

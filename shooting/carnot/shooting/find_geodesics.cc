@@ -9,13 +9,16 @@
 #include "carnot/numerics/parallel.h"
 #include "carnot/shooting/extremal/classification.h"
 #include "carnot/shooting/extremal/ranking.h"
-#include "carnot/shooting/problem/problem_line.h"
+#include "carnot/shooting/problem/origin.h"
 #include "carnot/shooting/problem/windings.h"
 #include "carnot/shooting/search/failure.h"
 #include "carnot/shooting/search/search.h"
 #include "carnot/shooting/shoot/multiple_shooting.h"
 
 namespace carnot {
+
+using namespace internal;
+
 namespace {
 
 constexpr long kFewSteps = 32;  // of the path that does not move
@@ -93,6 +96,8 @@ void search_image(const GeodesicOptions& options, Found& found) {
 }
 
 }  // namespace
+
+std::vector<std::string> minimisers() { return names_of_minimisers(); }
 
 void GeodesicOptions::validate(const BoundaryValueProblem& problem) const {
   const auto require = [](bool ok, const std::string& what) {

@@ -8,6 +8,29 @@
 
 namespace carnot {
 
+using namespace internal;
+
+// The answer, and what was asked.
+struct Steering::Way {
+  std::shared_ptr<const SteeringSearch> search;
+  std::shared_ptr<const SteeringAnswer> answer;
+  std::vector<double> from;
+  std::vector<double> to;
+  SteeringSense sense;
+};
+
+Steering::Steering(std::shared_ptr<const Way> way) : way_(std::move(way)) {}
+
+bool Steering::found() const { return way_->answer->geodesic.has_value(); }
+Reason Steering::reason() const { return way_->answer->reason; }
+const std::string& Steering::message() const { return way_->answer->message; }
+double Steering::distance() const { return way_->answer->distance(way_->sense); }
+const Geodesic* Steering::geodesic() const { return found() ? &*way_->answer->geodesic : nullptr; }
+
+bool Steering::at(double t, std::span<double> q) const {
+  return way_->search->point(*way_->answer, way_->sense, way_->from, way_->to, t, q);
+}
+
 // The search, and what it has found.
 class SteeringFunction::Implementation {
  public:
@@ -31,6 +54,14 @@ class SteeringFunction::Implementation {
     return found;
   }
 
+  [[nodiscard]] Steering way(SteeringMemory::Value answer,
+                             std::span<const double> from,
+                             std::span<const double> to,
+                             const SteeringSense& sense) const {
+    return Steering(std::make_shared<const Steering::Way>(Steering::Way{
+        search_, std::move(answer), {from.begin(), from.end()}, {to.begin(), to.end()}, sense}));
+  }
+
   [[nodiscard]] static SteeringMemory::Value refused(std::string message) {
     auto answer = std::make_shared<SteeringAnswer>();
     answer->reason = Reason::kIrregularEnd;
@@ -43,16 +74,6 @@ class SteeringFunction::Implementation {
   mutable SteeringMemory memory_;
 };
 
-bool Steering::found() const { return answer_->geodesic.has_value(); }
-Reason Steering::reason() const { return answer_->reason; }
-const std::string& Steering::message() const { return answer_->message; }
-double Steering::distance() const { return answer_->distance(sense_); }
-const Geodesic* Steering::geodesic() const { return found() ? &*answer_->geodesic : nullptr; }
-
-bool Steering::at(double t, std::span<double> q) const {
-  return search_->point(*answer_, sense_, from_, to_, t, q);
-}
-
 SteeringFunction::SteeringFunction(Dynamics dynamics, const SteeringOptions& options)
     : own_(std::make_shared<const Implementation>(std::move(dynamics), options)) {}
 
@@ -63,8 +84,8 @@ bool SteeringFunction::symmetric() const { return own_->search()->reversible(); 
 
 Steering SteeringFunction::steer(std::span<const double> from, std::span<const double> to) const {
   SteeringQuestion question;
-  std::shared_ptr<const SteeringAnswer> answer = own_->answer(from, to, question);
-  return {own_->search(), std::move(answer), from, to, question.sense};
+  SteeringMemory::Value answer = own_->answer(from, to, question);
+  return own_->way(std::move(answer), from, to, question.sense);
 }
 
 double SteeringFunction::distance(std::span<const double> from, std::span<const double> to) const {
@@ -88,7 +109,7 @@ std::vector<Steering> SteeringFunction::alternatives(std::span<const double> fro
     throw std::invalid_argument("count is " + std::to_string(count) + ", must be >= 1");
   }
   SteeringQuestion question;
-  std::vector<std::shared_ptr<const SteeringAnswer>> answers;
+  std::vector<SteeringMemory::Value> answers;
   std::string refusal = own_->search()->refusal(from, to);
   if (refusal.empty()) {
     question.ask(info(), own_->search()->rules(), from, to);
@@ -97,8 +118,8 @@ std::vector<Steering> SteeringFunction::alternatives(std::span<const double> fro
     answers.push_back(Implementation::refused(std::move(refusal)));
   }
   std::vector<Steering> ways;
-  for (auto& answer : answers) {
-    ways.push_back({own_->search(), std::move(answer), from, to, question.sense});
+  for (SteeringMemory::Value& answer : answers) {
+    ways.push_back(own_->way(std::move(answer), from, to, question.sense));
   }
   return ways;
 }

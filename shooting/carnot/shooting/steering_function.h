@@ -24,18 +24,13 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "carnot/shooting/geodesic.h"
 #include "carnot/shooting/reason.h"
 #include "carnot/shooting/steer/steering_options.h"
-#include "carnot/shooting/steer/steering_question.h"
 
 namespace carnot {
-
-struct SteeringAnswer;
-class SteeringSearch;
 
 // One way from a to b, or the reason why there is none. Cheap to copy.
 class Steering {
@@ -56,22 +51,10 @@ class Steering {
 
  private:
   friend class SteeringFunction;
-  Steering(std::shared_ptr<const SteeringSearch> search,
-           std::shared_ptr<const SteeringAnswer> answer,
-           std::span<const double> from,
-           std::span<const double> to,
-           const SteeringSense& sense)
-      : search_(std::move(search)),
-        answer_(std::move(answer)),
-        from_(from.begin(), from.end()),
-        to_(to.begin(), to.end()),
-        sense_(sense) {}
+  struct Way;
+  explicit Steering(std::shared_ptr<const Way> way);
 
-  std::shared_ptr<const SteeringSearch> search_;
-  std::shared_ptr<const SteeringAnswer> answer_;
-  std::vector<double> from_;
-  std::vector<double> to_;
-  SteeringSense sense_;
+  std::shared_ptr<const Way> way_;
 };
 
 class SteeringFunction {

@@ -6,8 +6,12 @@
 #include <stdexcept>
 
 #include "carnot/shooting/shoot/end_point.h"
+#include "carnot/shooting/steer/end_point_model.h"
 
 namespace carnot {
+
+using namespace internal;
+
 namespace {
 
 constexpr long kSteps = 64;  // of the tangent flow, and where there is no choice of steps
@@ -52,9 +56,36 @@ EndPointModel::Vector checked(const BoundaryValueProblem& problem,
 
 }  // namespace
 
-WarmStart::WarmStart(const BoundaryValueProblem& problem,
-                     const std::vector<double>& p0,
-                     double tolerance)
+class WarmStart::Implementation {
+ public:
+  Implementation(const BoundaryValueProblem& problem,
+                 const std::vector<double>& p0,
+                 double tolerance);
+
+  [[nodiscard]] bool ready() const { return ready_; }
+  [[nodiscard]] WarmStartReport solve(const double* to, double* p0) const;
+
+ private:
+  using Vector = EndPointModel::Vector;
+
+  // q(T) from p0. False when the flow fails.
+  [[nodiscard]] bool end_of(const StepPlan& plan, const Vector& p0, Vector& q) const;
+
+  BoundaryValueProblem problem_;
+  double tolerance_;
+  double roughness_;  // the error of rough flows
+  Vector p0_;
+  EndPointModel model_;
+  bool ready_ = false;
+  Vector end_;      // q(T) from p0_
+  StepPlan rough_;  // of the first flows,
+  StepPlan plan_;   // of those near the target,
+  StepPlan check_;  // and of the last
+};
+
+WarmStart::Implementation::Implementation(const BoundaryValueProblem& problem,
+                                          const std::vector<double>& p0,
+                                          double tolerance)
     : problem_(problem),
       tolerance_(tolerance),
       roughness_(0.1 * std::sqrt(tolerance)),
@@ -75,7 +106,7 @@ WarmStart::WarmStart(const BoundaryValueProblem& problem,
            largest_difference(end_.data(), problem.to.data(), problem.dynamics.dof) <= kArrives;
 }
 
-bool WarmStart::end_of(const StepPlan& plan, const Vector& p0, Vector& q) const {
+bool WarmStart::Implementation::end_of(const StepPlan& plan, const Vector& p0, Vector& q) const {
   const int n = problem_.dynamics.dof;
   std::array<double, 2 * EndPointModel::kMostDof> z{};
   std::copy(problem_.from.begin(), problem_.from.end(), z.begin());
@@ -85,7 +116,7 @@ bool WarmStart::end_of(const StepPlan& plan, const Vector& p0, Vector& q) const 
   return q.allFinite();
 }
 
-WarmStartReport WarmStart::solve(const double* to, double* p0) const {
+WarmStartReport WarmStart::Implementation::solve(const double* to, double* p0) const {
   constexpr int kMostFlows = 16;
   constexpr double kAim = 0.3;  // of the tolerance
   constexpr double kFar = 30;   // times the roughness: a rough flow is good enough
@@ -130,5 +161,14 @@ WarmStartReport WarmStart::solve(const double* to, double* p0) const {
   if (report.converged) std::copy(p.data(), p.data() + n, p0);
   return report;
 }
+
+WarmStart::WarmStart(const BoundaryValueProblem& problem,
+                     const std::vector<double>& p0,
+                     double tolerance)
+    : own_(std::make_shared<const Implementation>(problem, p0, tolerance)) {}
+
+bool WarmStart::ready() const { return own_->ready(); }
+
+WarmStartReport WarmStart::solve(const double* to, double* p0) const { return own_->solve(to, p0); }
 
 }  // namespace carnot

@@ -7,12 +7,11 @@
 // for the flow that should arrive, whose end is the check.
 #pragma once
 
-#include <Eigen/Core>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "carnot/shooting/boundary_value_problem.h"
-#include "carnot/shooting/steer/end_point_model.h"
 
 namespace carnot {
 
@@ -23,6 +22,7 @@ struct WarmStartReport {
   int flows = 0;
 };
 
+// Cheap to copy.
 class WarmStart {
  public:
   // From p0, an extremal of `problem`: n^2 + n + 1 tangent flows. Throws std::invalid_argument on
@@ -33,7 +33,7 @@ class WarmStart {
 
   // False where p0 does not arrive, or dq(T)/dp0 is singular or so large that single shooting loses
   // its digits: solve() then fails at once.
-  [[nodiscard]] bool ready() const { return ready_; }
+  [[nodiscard]] bool ready() const;
 
   // The geodesic from `from` to `to` (length n) that belongs to the same branch, if it is near: its
   // momentum in `p0` (length n). On failure p0 is that of the known extremal. Thread-safe, no
@@ -41,21 +41,8 @@ class WarmStart {
   [[nodiscard]] WarmStartReport solve(const double* to, double* p0) const;
 
  private:
-  using Vector = EndPointModel::Vector;
-
-  // q(T) from p0; false when the flow fails.
-  [[nodiscard]] bool end_of(const StepPlan& plan, const Vector& p0, Vector& q) const;
-
-  BoundaryValueProblem problem_;
-  double tolerance_;
-  double roughness_;  // the error of rough flows
-  Vector p0_;
-  EndPointModel model_;
-  bool ready_ = false;
-  Vector end_;      // q(T) from p0_
-  StepPlan rough_;  // of the first flows,
-  StepPlan plan_;   // of those near the target,
-  StepPlan check_;  // and of the last
+  class Implementation;
+  std::shared_ptr<const Implementation> own_;
 };
 
 }  // namespace carnot

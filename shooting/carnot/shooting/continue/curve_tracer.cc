@@ -9,7 +9,7 @@
 #include "carnot/shooting/shoot/end_point.h"
 #include "carnot/shooting/shoot/survey.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 using Eigen::VectorXd;
@@ -81,7 +81,7 @@ bool CurveTracer::renew() {
 bool CurveTracer::add(const CurvePoint& point) {
   const Place place = place_of(point.x);
   const BoundaryValueProblem problem = line_.at(place.s);
-  auto extremal = verify(problem, place.knots, steps_, options_.tolerance);
+  auto extremal = verify(problem, place.knots, steps_, options_.tolerance).extremal;
   if (!extremal) return false;
   const std::vector<double> p0 = place.knots.p0();
   const int n = place.knots.dof;
@@ -172,7 +172,7 @@ ContinuationStatus CurveTracer::trace(const Place& start, const Place* origin) {
   origin_ = origin;
   VectorXd along = VectorXd::Unit(start.knots.dof + 1, start.knots.dof);
   if (origin != nullptr) along = head_of(start) - head_of(*origin);
-  if (!verify(line_.at(start.s), start.knots, steps_, options_.tolerance)) {
+  if (!verify(line_.at(start.s), start.knots, steps_, options_.tolerance).extremal) {
     return ContinuationStatus::kNotConverged;
   }
   if (!set_up(start, along)) return ContinuationStatus::kSingular;
@@ -252,4 +252,4 @@ void CurveTracer::note_crossing(const CurvePoint& before, const VectorXd& x) {
   crossings_.push_back(std::move(crossing));
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

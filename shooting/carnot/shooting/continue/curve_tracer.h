@@ -9,7 +9,7 @@
 #include "carnot/shooting/continue/solution_curve.h"
 #include "carnot/shooting/extremal/verification.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 // A solution at s, in units of the scene.
 struct Place {
@@ -89,4 +89,4 @@ class CurveTracer {
   std::vector<Crossing> crossings_;
 };
 
-}  // namespace carnot
+}  // namespace carnot::internal

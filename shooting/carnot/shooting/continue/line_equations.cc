@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 constexpr int kNodes = 5;
@@ -157,4 +157,4 @@ bool LineEquations::evaluate(const Eigen::VectorXd& x,
   return add_derivative_in_s(x, jacobian);
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -11,7 +11,7 @@
 #include "carnot/shooting/problem/problem_line.h"
 #include "carnot/shooting/shoot/shooting_equations.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 class LineEquations {
  public:
@@ -56,4 +56,4 @@ class LineEquations {
   double growth_ = 0;
 };
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -1,13 +1,12 @@
 #include "carnot/shooting/continue/solution_curve.h"
 
-#include <Eigen/LU>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-namespace carnot {
+#include "carnot/shooting/linear/dense.h"
+
+namespace carnot::internal {
 namespace {
 
 using Eigen::MatrixXd;
@@ -33,15 +32,12 @@ VectorXd between(const CurvePoint& a, const CurvePoint& b, double share) {
 
 bool SolutionCurve::finish(const MatrixXd& jacobian, const VectorXd& along, CurvePoint& point) {
   const auto size = along.size();
-  point.tangent = bordered(jacobian, along).partialPivLu().solve(VectorXd::Unit(size, size - 1));
+  point.tangent = lu_solve(bordered(jacobian, along), VectorXd::Unit(size, size - 1));
   if (!point.tangent.allFinite()) return false;
   point.tangent.normalize();
-  const Eigen::PartialPivLU<MatrixXd> lu(bordered(jacobian, point.tangent));
-  const VectorXd pivots = lu.matrixLU().diagonal();
-  const bool negative =
-      ((pivots.array() < 0).count() % 2 == 1) != (lu.permutationP().determinant() < 0);
-  point.orientation = negative ? -1 : 1;
-  point.log_determinant = pivots.array().abs().log().sum();
+  const Determinant determinant = determinant_of(bordered(jacobian, point.tangent));
+  point.orientation = determinant.sign;
+  point.log_determinant = determinant.log_size;
   return true;
 }
 
@@ -65,7 +61,7 @@ std::optional<CurvePoint> SolutionCurve::correct(VectorXd x,
     }
     VectorXd right(x.size());
     right << residual, row.dot(x - predicted);
-    const VectorXd step = bordered(jacobian, row).partialPivLu().solve(right);
+    const VectorXd step = lu_solve(bordered(jacobian, row), right);
     const double length = step.norm();
     if (!(length < kContracts * last)) return std::nullopt;  // or not a number
     if (i == 0) point.distance = length;
@@ -80,13 +76,10 @@ std::optional<CurvePoint> SolutionCurve::start(const VectorXd& x, const VectorXd
   VectorXd residual;
   MatrixXd jacobian;
   if (!equations_.evaluate(x, residual, jacobian)) return std::nullopt;
-  const Eigen::ColPivHouseholderQR<MatrixXd> qr(jacobian.transpose());
-  const VectorXd pivots = qr.matrixQR().diagonal().cwiseAbs();
-  if (!(pivots.minCoeff() > kFullRank * pivots.maxCoeff())) return std::nullopt;
-  const auto size = x.size();
-  const VectorXd kernel = qr.householderQ() * VectorXd::Unit(size, size - 1);
-  const double sign = kernel.dot(along) < 0 ? -1 : 1;
-  return correct(x, sign * kernel, sign * kernel);
+  const auto kernel = kernel_line(jacobian, kFullRank);
+  if (!kernel) return std::nullopt;
+  const double sign = kernel->dot(along) < 0 ? -1 : 1;
+  return correct(x, sign * *kernel, sign * *kernel);
 }
 
 VectorXd SolutionCurve::locate(const CurvePoint& a, const CurvePoint& b, const Test& test) {
@@ -164,10 +157,9 @@ std::optional<VectorXd> SolutionCurve::other_direction(const VectorXd& x, const 
   VectorXd residual;
   MatrixXd jacobian;
   if (!equations_.evaluate(x, residual, jacobian)) return std::nullopt;
-  const Eigen::JacobiSVD<MatrixXd> svd(bordered(jacobian, tangent), Eigen::ComputeFullV);
-  VectorXd direction = svd.matrixV().col(x.size() - 1);
+  VectorXd direction = right_singular(bordered(jacobian, tangent)).vectors.col(x.size() - 1);
   direction -= direction.dot(tangent) * tangent;
   return direction.normalized();
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

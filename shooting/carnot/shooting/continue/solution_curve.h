@@ -14,7 +14,7 @@
 
 #include "carnot/shooting/continue/line_equations.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 struct CurvePoint {
   Eigen::VectorXd x;
@@ -67,4 +67,4 @@ class SolutionCurve {
   LineEquations& equations_;
 };
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -8,7 +8,7 @@
 #include "carnot/shooting/shoot/end_point.h"
 #include "carnot/shooting/shoot/survey.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 // How well the phases at T are known: p0 is as good as the end point error relative to the
@@ -150,4 +150,4 @@ void complete(const BoundaryValueProblem& problem, long samples, Extremal& extre
   set_label(problem, conjugate, geodesic);
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -3,7 +3,7 @@
 
 #include "carnot/shooting/extremal/verification.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 // Fills trajectory (`samples` times), extremes, conjugate times, Morse index, label, abnormal and
 // family dimension, as far as they can be known.
@@ -16,4 +16,4 @@ void label(const BoundaryValueProblem& problem, Extremal& extremal);
 // forces, where momenta along the rows of Dh move nothing.
 const ConjugateTimes& conjugate_times_of(const BoundaryValueProblem& problem, Extremal& extremal);
 
-}  // namespace carnot
+}  // namespace carnot::internal

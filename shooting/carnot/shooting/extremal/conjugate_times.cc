@@ -1,16 +1,16 @@
 #include "carnot/shooting/extremal/conjugate_times.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
+#include "carnot/shooting/linear/dense.h"
 #include "carnot/shooting/linear/lagrangian_plane.h"
 #include "carnot/shooting/problem/units.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 using Eigen::MatrixXd;
@@ -35,7 +35,7 @@ class Planes {
       : dynamics_(dynamics),
         units_(units),
         s_(s),
-        inverse_(s.inverse()),
+        inverse_(lu_inverse(s)),
         corank_(corank),
         precision_(precision),
         doubt_(kRoundOff * s_.norm() * inverse_.norm()) {}
@@ -95,11 +95,11 @@ class Planes {
     const StepPlan plan = StepPlan::equal(from.t, t - from.t, 1);
     if (!dynamics_.tangent_flow(plan, to.z.data(), m.data()).completed()) return false;
     MatrixXd carried = from.plane;
-    carried.topRows(n) = s_ * carried.topRows(n);
-    carried.bottomRows(n) = inverse_ * carried.bottomRows(n);
-    carried = units_.map(m) * carried;
-    carried.topRows(n) = inverse_ * carried.topRows(n);
-    carried.bottomRows(n) = s_ * carried.bottomRows(n);
+    carried.topRows(n) = product(s_, carried.topRows(n));
+    carried.bottomRows(n) = product(inverse_, carried.bottomRows(n));
+    carried = product(units_.map(m), carried);
+    carried.topRows(n) = product(inverse_, carried.topRows(n));
+    carried.bottomRows(n) = product(s_, carried.bottomRows(n));
     to.plane = orthonormal(carried);
     to.phases = phases_of(to.plane);
     // det W = (det U)^2.
@@ -151,7 +151,7 @@ std::optional<Graph> typical_graph(double begin,
       RowMajor m(2 * n, 2 * n);
       const StepPlan plan = StepPlan::equal(t, h, 1);
       if (!problem.dynamics.tangent_flow(plan, z.data(), m.data()).completed()) return std::nullopt;
-      plane = orthonormal(units.map(m) * plane);
+      plane = orthonormal(product(units.map(m), plane));
       if (t + h < first) continue;
       Graph next = graph_of(plane);
       if (next.balance.allFinite()) graphs.push_back(std::move(next));
@@ -270,4 +270,4 @@ ConjugateTimes conjugate_times(const BoundaryValueProblem& problem,
   return coarse;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -20,7 +20,7 @@
 #include "carnot/shooting/boundary_value_problem.h"
 #include "carnot/shooting/shoot/knots.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 struct ConjugateTimes {
   bool known = false;         // false where round-off hides the count
@@ -42,4 +42,4 @@ ConjugateTimes conjugate_times(const BoundaryValueProblem& problem,
                                long steps,
                                const ConjugateTimesOptions& options = {});
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <tuple>
 
-namespace carnot {
+namespace carnot::internal {
 
 void rank(std::vector<Extremal>& list) {
   std::stable_sort(list.begin(), list.end(), [](const Extremal& a, const Extremal& b) {
@@ -31,4 +31,4 @@ double missed_estimate(const std::vector<int>& hits) {
   return twice > 0 ? once * once / (2 * twice) : once * std::max(0.0, once - 1) / 2;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -5,7 +5,7 @@
 
 #include "carnot/shooting/extremal/verification.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 // Equal actions, as of mirror partners, differ by less than this, relative.
 inline constexpr double kSameAction = 1e-9;
@@ -20,4 +20,4 @@ void rank(std::vector<Extremal>& list);
 // of the number of classes in a population, Scand. J. Statist. 11 (1984).
 double missed_estimate(const std::vector<int>& hits);
 
-}  // namespace carnot
+}  // namespace carnot::internal

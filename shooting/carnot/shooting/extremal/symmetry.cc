@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace carnot {
+namespace carnot::internal {
 
 void turn_plane(const Symmetries& of, double angle, double* x) {
   if (of.x < 0) return;
@@ -93,4 +93,4 @@ Path partner(const SceneInfo& info, const ProblemSymmetry& symmetry, const Path&
   return image;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -10,7 +10,7 @@
 
 #include "carnot/shooting/shoot/knots.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 // q -> R D q + b with R the rotation of the plane by `turn`; p -> R D p, and with `reverses` the
 // path is run backwards and p changes its sign.
@@ -32,4 +32,4 @@ Knots partner(const SceneInfo& info, const ProblemSymmetry& symmetry, const Knot
 // The nodes of the partner of a path; without momenta and multipliers.
 Path partner(const SceneInfo& info, const ProblemSymmetry& symmetry, const Path& path);
 
-}  // namespace carnot
+}  // namespace carnot::internal

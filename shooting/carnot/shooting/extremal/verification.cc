@@ -3,17 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "carnot/shooting/problem/manifold.h"
 #include "carnot/shooting/shoot/end_point.h"
 #include "carnot/shooting/shoot/multiple_shooting.h"
 #include "carnot/shooting/shoot/survey.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 constexpr int kPathIntervals = 32;
 constexpr long kMaxSteps = 4096;
+constexpr double kAsFarAsItGoes = 1e-14;  // no scaled jumps are smaller
 
 // What round-off may add to the defect of knots, where tangent flows grow by so much.
 double round_off(const Knots& knots, double growth) {
@@ -81,68 +83,73 @@ long enough_steps(const BoundaryValueProblem& problem,
   return steps;
 }
 
-}  // namespace
+// What is asked of an extremal.
+struct Demand {
+  double aim;      // of Newton's method, at the end
+  double allowed;  // by the check, at the end or at a knot
+};
 
-std::optional<Extremal> verify(const BoundaryValueProblem& problem,
-                               Knots knots,
-                               long steps,
-                               double tolerance,
-                               Reason* reason) {
-  constexpr double kPart = 1e-3;  // of the distance: a path that misses by more goes elsewhere
-  Reason unused = Reason::kNone;
-  Reason& why = reason != nullptr ? *reason : unused;
-  steps = enough_steps(problem, knots, steps, tolerance);
-  const long tighter = 2 * steps;
-  Extremal extremal;
-  Geodesic& geodesic = extremal.geodesic;
-  std::vector<double> p0 = knots.p0();
-  Eigen::MatrixXd tangent;
-  double error = std::numeric_limits<double>::infinity();
-  // Near targets ask for digits relative to the distance.
+// Near targets ask for digits relative to the distance.
+Demand demand_of(const BoundaryValueProblem& problem, double tolerance) {
+  constexpr double kFiner = 1e-3;  // the aim over the tolerance
+  constexpr double kPart = 1e-3;   // of the distance: a path that misses by more goes elsewhere
   const double distance =
       largest_difference(problem.from.data(), problem.to.data(), problem.dynamics.dof);
-  const double aim = 1e-3 * tolerance * (distance > 0 ? std::min(1.0, distance) : 1);
-  const double allowed = distance > 0 ? std::min(tolerance, kPart * distance) : tolerance;
-  if (correct(problem, steps, aim, p0, tangent) <= allowed) {
-    // Holonomic constraints: p along the rows of Dh moves nothing.
-    reduce(problem, steps, aim, p0, tangent);
-    extremal.singular =
-        kernel_of(Units(problem, p0.data()), tangent).cols() > problem.dynamics.forced;
-    if (problem.dynamics.forced > 0) (void)bring_to_manifold(problem, p0);
-    extremal.knots = knots_of(problem, p0, 1, tighter);
-    error = largest_difference(extremal.knots.at(1), problem.to.data(), problem.dynamics.dof);
+  if (!(distance > 0)) return {kFiner * tolerance, tolerance};
+  return {kFiner * tolerance * std::min(1.0, distance), std::min(tolerance, kPart * distance)};
+}
+
+// From p(0) alone. False where a flow of twice as many steps does not arrive.
+bool check_single(const BoundaryValueProblem& problem,
+                  const Demand& demand,
+                  long steps,
+                  std::vector<double> p0,
+                  Extremal& extremal) {
+  Eigen::MatrixXd tangent;
+  if (!(correct(problem, steps, demand.aim, p0, tangent) <= demand.allowed)) return false;
+  reduce(problem, steps, demand.aim, p0, tangent);
+  // Momenta along the rows of Dh move nothing where holonomic constraints need forces.
+  const auto kernel = kernel_of(Units(problem, p0.data()), tangent).cols();
+  if (problem.dynamics.forced > 0) (void)bring_to_manifold(problem, p0);
+  const Knots knots = knots_of(problem, p0, 1, 2 * steps);
+  const double error = largest_difference(knots.at(1), problem.to.data(), problem.dynamics.dof);
+  if (!(error <= demand.allowed)) return false;
+  extremal.singular = kernel > problem.dynamics.forced;
+  extremal.knots = knots;
+  extremal.geodesic.verification = Verification::kSingle;
+  extremal.geodesic.endpoint_error = error;
+  return true;
+}
+
+// From one knot to the next. Returns why that is not good enough, or kNone.
+Reason check_knots(const BoundaryValueProblem& problem,
+                   const Demand& demand,
+                   long steps,
+                   double tolerance,
+                   Knots knots,
+                   Extremal& extremal) {
+  ShootingOptions options;
+  options.steps = steps;
+  options.tolerance = kAsFarAsItGoes;
+  const double growth = shoot(problem, options, knots).growth;
+  const double defect = knot_defect(problem, knots, 2 * steps);
+  extremal.knots = knots;
+  extremal.geodesic.verification = Verification::kKnots;
+  extremal.geodesic.knot_defect = defect;
+  if (defect <= demand.allowed) {
+    return magnifies(problem, knots, steps, tolerance) ? Reason::kNone : Reason::kNotVerified;
   }
-  if (error <= allowed) {
-    geodesic.verification = Verification::kSingle;
-    geodesic.endpoint_error = error;
-  } else {
-    extremal.singular = false;
-    ShootingOptions options;
-    options.steps = steps;
-    options.tolerance = 1e-14;  // as far as it goes
-    const double growth = shoot(problem, options, knots).growth;
-    extremal.knots = knots;
-    geodesic.verification = Verification::kKnots;
-    geodesic.knot_defect = knot_defect(problem, knots, tighter);
-    if (geodesic.knot_defect <= allowed && !magnifies(problem, knots, steps, tolerance)) {
-      why = Reason::kNotVerified;
-      return std::nullopt;
-    }
-    if (!(geodesic.knot_defect <= allowed)) {
-      why = std::isinf(geodesic.knot_defect)              ? Reason::kFlowFailed
-            : allowed < round_off(extremal.knots, growth) ? Reason::kBeyondDouble
-                                                          : Reason::kNotVerified;
-      return std::nullopt;
-    }
-  }
-  const FlowSummary measured = survey(problem, extremal.knots, tighter, kPathIntervals + 1);
-  if (!measured.completed()) {
-    why = Reason::kFlowFailed;
-    return std::nullopt;
-  }
-  const int n = problem.dynamics.dof;
-  std::vector<double> velocity(n);
+  if (std::isinf(defect)) return Reason::kFlowFailed;
+  return demand.allowed < round_off(knots, growth) ? Reason::kBeyondDouble : Reason::kNotVerified;
+}
+
+// What a flow of `steps` along the knots says of the extremal. False when it fails.
+bool measure(const BoundaryValueProblem& problem, long steps, Extremal& extremal) {
+  const FlowSummary measured = survey(problem, extremal.knots, steps, kPathIntervals + 1);
+  if (!measured.completed()) return false;
+  std::vector<double> velocity(problem.dynamics.dof);
   std::vector<double> lambda(problem.dynamics.multipliers + 1);
+  Geodesic& geodesic = extremal.geodesic;
   geodesic.p0 = extremal.knots.p0();
   problem.dynamics.evaluate(
       0, problem.from.data(), geodesic.p0.data(), velocity.data(), lambda.data());
@@ -152,9 +159,24 @@ std::optional<Extremal> verify(const BoundaryValueProblem& problem,
   if (std::isfinite(measured.length)) geodesic.length = measured.length;
   geodesic.constraint_error = measured.constraint_error;
   geodesic.energy_drift = measured.energy_drift;
-  geodesic.plan = StepPlan::equal(0, problem.time, tighter);
+  geodesic.plan = StepPlan::equal(0, problem.time, steps);
   extremal.path = measured.trajectory.q;
-  return extremal;
+  return true;
+}
+
+}  // namespace
+
+Outcome verify(const BoundaryValueProblem& problem, Knots knots, long steps, double tolerance) {
+  const Demand demand = demand_of(problem, tolerance);
+  steps = enough_steps(problem, knots, steps, tolerance);
+  Extremal extremal;
+  if (!check_single(problem, demand, steps, knots.p0(), extremal)) {
+    const Reason reason =
+        check_knots(problem, demand, steps, tolerance, std::move(knots), extremal);
+    if (reason != Reason::kNone) return {std::nullopt, reason};
+  }
+  if (!measure(problem, 2 * steps, extremal)) return {std::nullopt, Reason::kFlowFailed};
+  return {std::move(extremal), Reason::kNone};
 }
 
 bool same(const Extremal& a, const Extremal& b) {
@@ -183,4 +205,4 @@ bool same_family(const Extremal& a, const Extremal& b) {
   return a.singular && b.singular && apart <= kSameAction * std::abs(a.geodesic.action);
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -14,7 +14,7 @@
 #include "carnot/shooting/reason.h"
 #include "carnot/shooting/shoot/knots.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 // A verified extremal, its knots, and where it is at equidistant times to tell it from others.
 struct Extremal {
@@ -26,13 +26,14 @@ struct Extremal {
   int image = 0;                            // of the target, see windings.h
 };
 
-// Nothing when neither check succeeds: `reason` says why. `steps` is where the search for a step
-// begins.
-std::optional<Extremal> verify(const BoundaryValueProblem& problem,
-                               Knots knots,
-                               long steps,
-                               double tolerance,
-                               Reason* reason = nullptr);
+// What became of an attempt: the extremal or, where there is none, how far the attempt came.
+struct Outcome {
+  std::optional<Extremal> extremal;
+  Reason reason = Reason::kNone;  // kNone where there is an extremal
+};
+
+// `steps` is where the search for a step begins.
+Outcome verify(const BoundaryValueProblem& problem, Knots knots, long steps, double tolerance);
 
 // The same trajectory: nowhere further apart than 1e-6 of its extent.
 bool same(const Extremal& a, const Extremal& b);
@@ -40,4 +41,4 @@ bool same(const Extremal& a, const Extremal& b);
 // Both singular and of equal action: one continuous family, of which one member is enough.
 bool same_family(const Extremal& a, const Extremal& b);
 
-}  // namespace carnot
+}  // namespace carnot::internal

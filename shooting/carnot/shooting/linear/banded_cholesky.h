@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace carnot {
+namespace carnot::internal {
 
 class BandedCholesky {
  public:
@@ -59,4 +59,4 @@ class BandedCholesky {
   std::vector<double> a_;
 };
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace carnot {
+namespace carnot::internal {
 
 class BandedLu {
  public:
@@ -87,4 +87,4 @@ class BandedLu {
   std::vector<int> pivot_;
 };
 
-}  // namespace carnot
+}  // namespace carnot::internal

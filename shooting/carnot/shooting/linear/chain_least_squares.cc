@@ -6,7 +6,7 @@
 
 #include "carnot/shooting/linear/banded_cholesky.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 // |r|^2 / 2 along a chain, its gradient J'r and J'J.
@@ -183,4 +183,4 @@ int minimise_chain(const ChainResiduals& residuals_of,
   return iterations;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -10,7 +10,7 @@
 #include <functional>
 #include <vector>
 
-namespace carnot {
+namespace carnot::internal {
 
 struct ChainOptions {
   int max_iterations = 12;
@@ -33,4 +33,4 @@ int minimise_chain(const ChainResiduals& residuals_of,
                    const ChainOptions& options,
                    std::vector<double>& x);
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -1,15 +1,13 @@
 #include "carnot/shooting/linear/lagrangian_plane.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <complex>
 #include <limits>
 
-namespace carnot {
+#include "carnot/shooting/linear/dense.h"
+
+namespace carnot::internal {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -21,17 +19,16 @@ Phases phases_of(const MatrixXd& plane) {
   const auto n = plane.cols();
   const auto x = plane.topRows(n);
   const auto p = plane.bottomRows(n);
-  const MatrixXd real = p * p.transpose() - x * x.transpose();
-  const MatrixXd cross = p * x.transpose();
+  const MatrixXd real = product(p, p.transpose()) - product(x, x.transpose());
+  const MatrixXd cross = product(p, x.transpose());
   const MatrixXd imaginary = cross + cross.transpose();
   Phases phases;
   double best = std::numeric_limits<double>::infinity();
   for (const double angle : kCombinations) {
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(std::cos(angle) * real +
-                                                         std::sin(angle) * imaginary);
-    const MatrixXd& v = solver.eigenvectors();
-    const MatrixXd a = v.transpose() * real * v;
-    const MatrixXd b = v.transpose() * imaginary * v;
+    const MatrixXd v =
+        symmetric_eigen(std::cos(angle) * real + std::sin(angle) * imaginary).vectors;
+    const MatrixXd a = product(product(v.transpose(), real), v);
+    const MatrixXd b = product(product(v.transpose(), imaginary), v);
     const double mixed = (a - MatrixXd(a.diagonal().asDiagonal())).cwiseAbs().maxCoeff() +
                          (b - MatrixXd(b.diagonal().asDiagonal())).cwiseAbs().maxCoeff();
     if (!(mixed < best)) continue;
@@ -43,23 +40,16 @@ Phases phases_of(const MatrixXd& plane) {
   std::sort(phases.angles.data(), phases.angles.data() + n, [](double a, double b) {
     return std::abs(a) < std::abs(b);
   });
-  const Eigen::MatrixXcd unitary =
-      p.cast<std::complex<double>>() + std::complex<double>(0, 1) * x.cast<std::complex<double>>();
-  phases.turn = std::arg(unitary.determinant());
+  phases.turn = argument_of_determinant(p, x);
   return phases;
-}
-
-MatrixXd orthonormal(const MatrixXd& columns) {
-  const Eigen::HouseholderQR<MatrixXd> qr(columns);
-  return qr.householderQ() * MatrixXd::Identity(columns.rows(), columns.cols());
 }
 
 Graph graph_of(const MatrixXd& plane) {
   constexpr double kZero = 1e-13;  // relative; smaller ones are round-off
   const auto n = plane.cols();
-  const MatrixXd ratio = plane.topRows(n) * plane.bottomRows(n).partialPivLu().inverse();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(0.5 * (ratio + ratio.transpose()));
-  VectorXd root = solver.eigenvalues().cwiseAbs();
+  const MatrixXd ratio = product(plane.topRows(n), lu_inverse(plane.bottomRows(n)));
+  const SymmetricEigen eigen = symmetric_eigen(0.5 * (ratio + ratio.transpose()));
+  VectorXd root = eigen.values.cwiseAbs();
   const double largest = root.maxCoeff();
   Graph graph;
   for (double& value : root) {
@@ -70,8 +60,8 @@ Graph graph_of(const MatrixXd& plane) {
   }
   graph.regularity = root.minCoeff() / largest;
   root = root.cwiseSqrt();
-  graph.balance = solver.eigenvectors() * root.asDiagonal() * solver.eigenvectors().transpose();
+  graph.balance = product(eigen.vectors * root.asDiagonal(), eigen.vectors.transpose());
   return graph;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

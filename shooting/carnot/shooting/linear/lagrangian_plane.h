@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-namespace carnot {
+namespace carnot::internal {
 
 struct Phases {
   Eigen::VectorXd angles;  // theta_j in (-pi, pi], smallest |theta_j| first
@@ -17,9 +17,6 @@ struct Phases {
 
 // `plane` is 2n x n with orthonormal columns.
 Phases phases_of(const Eigen::MatrixXd& plane);
-
-// An orthonormal basis of the plane that the columns span.
-Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns);
 
 // What X P^-1, a symmetric matrix, says of a plane.
 struct Graph {
@@ -30,4 +27,4 @@ struct Graph {
 
 Graph graph_of(const Eigen::MatrixXd& plane);
 
-}  // namespace carnot
+}  // namespace carnot::internal

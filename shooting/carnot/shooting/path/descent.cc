@@ -10,7 +10,7 @@
 #include "carnot/shooting/path/discrete_equations.h"
 #include "carnot/shooting/path/discrete_newton.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
@@ -216,4 +216,4 @@ std::vector<Path> ways_down(const BoundaryValueProblem& problem, const Path& sad
   return paths;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -19,11 +19,11 @@
 #include "carnot/shooting/boundary_value_problem.h"
 #include "carnot/shooting/path/path.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 // The discrete extremals of less action that the ways down on either side of `saddle`, a discrete
 // extremal, lead to: at most two, and none where the saddle is a minimum. Cost: some hundred
 // factorisations of the banded matrix.
 std::vector<Path> ways_down(const BoundaryValueProblem& problem, const Path& saddle);
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace carnot {
+namespace carnot::internal {
 
 DiscreteEquations::DiscreteEquations(const Dynamics& dynamics, double h, int intervals)
     : dynamics_(dynamics),
@@ -110,4 +110,4 @@ void DiscreteEquations::set_slopes(const Path& path, int i) {
   }
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

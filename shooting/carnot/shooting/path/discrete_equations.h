@@ -15,7 +15,7 @@
 #include "carnot/shooting/linear/banded_lu.h"
 #include "carnot/shooting/path/path.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 class DiscreteEquations {
  public:
@@ -72,4 +72,4 @@ class DiscreteEquations {
   std::vector<double> slopes_;
 };
 
-}  // namespace carnot
+}  // namespace carnot::internal

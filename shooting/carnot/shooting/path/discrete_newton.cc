@@ -5,7 +5,7 @@
 
 #include "carnot/shooting/path/discrete_equations.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 double norm(const std::vector<double>& x) {
@@ -67,4 +67,4 @@ DiscreteNewton tighten(const BoundaryValueProblem& problem,
   return result;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -7,7 +7,7 @@
 #include "carnot/shooting/boundary_value_problem.h"
 #include "carnot/shooting/path/path.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 struct DiscreteNewtonOptions {
   int max_iterations = 20;
@@ -26,4 +26,4 @@ DiscreteNewton tighten(const BoundaryValueProblem& problem,
                        const DiscreteNewtonOptions& options,
                        Path& path);
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace carnot {
+namespace carnot::internal {
 
 void fill_momenta(const Dynamics& dynamics, double h, Path& path) {
   const int n = dynamics.dof;
@@ -70,4 +70,4 @@ void Path::gather(int i, int multipliers, double* x) const {
   std::copy(lambda.data() + i * multipliers, lambda.data() + (i + 1) * multipliers, x + 2 * dof);
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

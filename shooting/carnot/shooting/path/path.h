@@ -5,7 +5,7 @@
 
 #include "carnot/dynamics.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 // Nodes i = 0..intervals at times i T / intervals; row-major arrays.
 struct Path {
@@ -41,4 +41,4 @@ bool skims_chart_end(const Dynamics& dynamics, const Path& path);
 // The action of the midpoint transcription, sum_i h L.
 double discrete_action(const Dynamics& dynamics, double h, const Path& path);
 
-}  // namespace carnot
+}  // namespace carnot::internal

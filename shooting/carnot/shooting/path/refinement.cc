@@ -7,7 +7,7 @@
 #include "carnot/shooting/path/discrete_newton.h"
 #include "carnot/shooting/path/relaxation.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 // Largest change of the momenta at common nodes, relative to the largest momentum.
@@ -116,4 +116,4 @@ Refinement refine(const BoundaryValueProblem& problem,
   return result;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

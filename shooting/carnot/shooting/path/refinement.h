@@ -11,7 +11,7 @@
 #include "carnot/shooting/boundary_value_problem.h"
 #include "carnot/shooting/path/path.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 struct RefinementOptions {
   double enough = 4e-2;  // change of the momenta, relative to the largest one, at which to stop
@@ -33,4 +33,4 @@ Refinement refine(const BoundaryValueProblem& problem,
 // The path on a grid of half the step, by cubic interpolation; multipliers linearly.
 Path halved(const Path& path);
 
-}  // namespace carnot
+}  // namespace carnot::internal

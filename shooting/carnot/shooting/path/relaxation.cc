@@ -5,7 +5,7 @@
 
 #include "carnot/shooting/linear/chain_least_squares.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 // What all intervals share.
@@ -171,4 +171,4 @@ Relaxation relax(const BoundaryValueProblem& problem,
   return result;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

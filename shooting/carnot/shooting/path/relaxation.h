@@ -14,7 +14,7 @@
 #include "carnot/shooting/boundary_value_problem.h"
 #include "carnot/shooting/path/path.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 struct RelaxationOptions {
   int outer_iterations = 8;   // updates of the multipliers
@@ -35,4 +35,4 @@ struct Relaxation {
 // of the path; none are zeros.
 Relaxation relax(const BoundaryValueProblem& problem, const RelaxationOptions& options, Path& path);
 
-}  // namespace carnot
+}  // namespace carnot::internal

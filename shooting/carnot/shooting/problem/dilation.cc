@@ -4,9 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "carnot/shooting/linear/dense.h"
 #include "carnot/shooting/problem/scales.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 using Eigen::MatrixXd;
@@ -60,7 +61,7 @@ class Fields {
       derivative.setConstant(std::numeric_limits<double>::quiet_NaN());
     }
     const MatrixXd terms = derivative.topRightCorner(rows - 1, n);
-    return terms.transpose() * terms;
+    return product(terms.transpose(), terms);
   }
   // The derivative of a field along another one, by central differences.
   [[nodiscard]] VectorXd derivative(int of, int along, const VectorXd& q) const {
@@ -147,7 +148,7 @@ std::optional<Dilation> Dilation::at_start(const BoundaryValueProblem& problem) 
     latest = fields_of(directions);
   }
   if (dilation.dof() < n || !dilation.basis_.allFinite()) return std::nullopt;
-  dilation.inverse_ = dilation.basis_.transpose() * metric;
+  dilation.inverse_ = product(dilation.basis_.transpose(), metric);
   return dilation;
 }
 
@@ -175,4 +176,4 @@ double Dilation::gauge(const VectorXd& y) const {
   return largest;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -13,7 +13,7 @@
 
 #include "carnot/shooting/boundary_value_problem.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 class Dilation {
  public:
@@ -43,4 +43,4 @@ class Dilation {
   double unit_ = 1;
 };
 
-}  // namespace carnot
+}  // namespace carnot::internal

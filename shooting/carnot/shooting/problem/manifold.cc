@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace carnot {
+namespace carnot::internal {
 
 bool bring_to_manifold(const Dynamics& dynamics, double* q) {
   if (dynamics.holonomic == 0) return true;
@@ -22,4 +22,4 @@ bool bring_to_manifold(const BoundaryValueProblem& problem, std::vector<double>&
   return true;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

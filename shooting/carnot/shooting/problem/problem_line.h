@@ -21,10 +21,4 @@ ProblemLine moving_target(const BoundaryValueProblem& problem, const std::vector
 ProblemLine moving_start(const BoundaryValueProblem& problem, const std::vector<double>& from);
 ProblemLine moving_time(const BoundaryValueProblem& problem, double time);
 
-// The coordinates that may be moved: translations along them are symmetries, the scene says.
-std::vector<int> movable(const SceneInfo& info);
-
-// The same problem with those of `from` at zero, where coordinates cost no digits.
-BoundaryValueProblem at_origin(const BoundaryValueProblem& problem);
-
 }  // namespace carnot

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace carnot {
+namespace carnot::internal {
 
 StartScales start_scales(const BoundaryValueProblem& problem) {
   const Dynamics& dynamics = problem.dynamics;
@@ -41,4 +41,4 @@ StartScales start_scales(const BoundaryValueProblem& problem) {
   return scales;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -5,7 +5,7 @@
 
 #include "carnot/shooting/boundary_value_problem.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 // What the straight line tells of sizes.
 struct StartScales {
@@ -17,4 +17,4 @@ struct StartScales {
 
 StartScales start_scales(const BoundaryValueProblem& problem);
 
-}  // namespace carnot
+}  // namespace carnot::internal

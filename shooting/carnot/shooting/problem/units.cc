@@ -1,13 +1,13 @@
 #include "carnot/shooting/problem/units.h"
 
-#include <Eigen/LU>
 #include <cmath>
 #include <vector>
 
+#include "carnot/shooting/linear/dense.h"
 #include "carnot/shooting/problem/dilation.h"
 #include "carnot/shooting/problem/scales.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 using Eigen::MatrixXd;
@@ -39,7 +39,7 @@ Units::Units(const BoundaryValueProblem& problem, const double* p0) {
   for (int j = 0; j < n; ++j) {
     e_.col(j) = unit * std::pow(length / unit, dilation->weights()[j]) * dilation->basis().col(j);
   }
-  inverse_ = e_.inverse();
+  inverse_ = lu_inverse(e_);
   c_ = length * length / problem.time;
   scaled_ = true;
 }
@@ -48,19 +48,19 @@ MatrixXd Units::map(const MatrixXd& m) const {
   if (!scaled_) return m;
   const auto n = e_.rows();
   MatrixXd scaled(2 * n, 2 * n);
-  scaled.leftCols(n) = m.leftCols(n) * e_;
-  scaled.rightCols(n) = c_ * m.rightCols(n) * inverse_.transpose();
-  scaled.topRows(n) = inverse_ * scaled.topRows(n).eval();
-  scaled.bottomRows(n) = e_.transpose() * scaled.bottomRows(n).eval() / c_;
+  scaled.leftCols(n) = product(m.leftCols(n), e_);
+  scaled.rightCols(n) = c_ * product(m.rightCols(n), inverse_.transpose());
+  scaled.topRows(n) = product(inverse_, scaled.topRows(n));
+  scaled.bottomRows(n) = product(e_.transpose(), scaled.bottomRows(n)) / c_;
   return scaled;
 }
 
 MatrixXd Units::tangent(const MatrixXd& columns) const {
   if (!scaled_) return columns;
   const auto n = e_.rows();
-  MatrixXd scaled = c_ * columns * inverse_.transpose();
-  scaled.topRows(n) = inverse_ * scaled.topRows(n).eval();
-  scaled.bottomRows(n) = e_.transpose() * scaled.bottomRows(n).eval() / c_;
+  MatrixXd scaled = c_ * product(columns, inverse_.transpose());
+  scaled.topRows(n) = product(inverse_, scaled.topRows(n));
+  scaled.bottomRows(n) = product(e_.transpose(), scaled.bottomRows(n)) / c_;
   return scaled;
 }
 
@@ -73,7 +73,7 @@ VectorXd Units::displacement(const VectorXd& q) const {
 }
 
 MatrixXd Units::momenta(const MatrixXd& p) const {
-  return scaled_ ? MatrixXd(c_ * inverse_.transpose() * p) : p;
+  return scaled_ ? MatrixXd(c_ * product(inverse_.transpose(), p)) : p;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

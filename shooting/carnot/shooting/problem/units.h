@@ -10,7 +10,7 @@
 
 #include "carnot/shooting/boundary_value_problem.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 class Units {
  public:
@@ -35,4 +35,4 @@ class Units {
   double c_ = 1;
 };
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -5,7 +5,7 @@
 
 #include "carnot/shooting/problem/scales.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 std::vector<Image> images_of_target(const BoundaryValueProblem& problem, double max_length) {
   constexpr double kSlack = 1e-9;
@@ -47,4 +47,4 @@ std::vector<Image> images_of_target(const BoundaryValueProblem& problem, double 
   return images;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

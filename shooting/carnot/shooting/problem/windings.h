@@ -5,7 +5,7 @@
 
 #include "carnot/shooting/boundary_value_problem.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 // A target with whole periods added, windings[j] of them to coordinate j.
 struct Image {
@@ -19,4 +19,4 @@ struct Image {
 inline constexpr int kMostImages = 27;
 std::vector<Image> images_of_target(const BoundaryValueProblem& problem, double max_length);
 
-}  // namespace carnot
+}  // namespace carnot::internal

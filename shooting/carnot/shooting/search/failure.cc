@@ -1,15 +1,15 @@
 #include "carnot/shooting/search/failure.h"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
 
 #include "carnot/shooting/extremal/conjugate_times.h"
+#include "carnot/shooting/linear/dense.h"
 #include "carnot/shooting/shoot/end_point.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 constexpr long kSteps = 256;  // of the flow from the momentum of a discrete extremal
@@ -36,8 +36,7 @@ EndPoint end_point(const BoundaryValueProblem& problem, const std::vector<double
   std::vector<double> z;
   const auto tangent = end_point_tangent(problem, p0, problem.time, kSteps, z);
   if (!tangent) return {"the flow from its momentum cannot be integrated"};
-  const Eigen::VectorXd values =
-      Eigen::JacobiSVD<Eigen::MatrixXd>(tangent->topRows(n)).singularValues();
+  const Eigen::VectorXd values = singular_values(tangent->topRows(n));
   const auto rank = n - static_cast<int>(kernel_of(Units(problem, p0.data()), *tangent).cols());
   const double condition = values[0] / values[n - 1];
   text << "the flow from its momentum ends " << largest_difference(z.data(), problem.to.data(), n)
@@ -155,4 +154,4 @@ Failure explain_failure(const BoundaryValueProblem& problem,
                    : "try a larger --tolerance, more --starts or another --seed")};
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

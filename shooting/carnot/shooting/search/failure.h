@@ -7,7 +7,7 @@
 #include "carnot/shooting/reason.h"
 #include "carnot/shooting/search/search.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 struct Failure {
   Reason reason = Reason::kNone;
@@ -21,4 +21,4 @@ Failure explain_failure(const BoundaryValueProblem& problem,
                         const Search& search,
                         const GeodesicOptions& options);
 
-}  // namespace carnot
+}  // namespace carnot::internal

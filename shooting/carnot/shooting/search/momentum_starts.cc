@@ -6,7 +6,7 @@
 
 #include "carnot/shooting/problem/manifold.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 // The momentum of the velocity of the straight line, made admissible; the velocity itself where
@@ -49,4 +49,4 @@ std::vector<double> momentum_start(const BoundaryValueProblem& problem, std::uin
   return p;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

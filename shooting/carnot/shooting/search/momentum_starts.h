@@ -6,10 +6,10 @@
 
 #include "carnot/shooting/boundary_value_problem.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 // Start i: the momentum of the straight line first, then random ones of its size times 0.1 to 10,
 // on the manifold where there are holonomic constraints. Empty where a draw has none.
 std::vector<double> momentum_start(const BoundaryValueProblem& problem, std::uint64_t seed, int i);
 
-}  // namespace carnot
+}  // namespace carnot::internal

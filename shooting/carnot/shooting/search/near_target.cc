@@ -7,7 +7,7 @@
 #include "carnot/shooting/path/discrete_newton.h"
 #include "carnot/shooting/path/relaxation.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 using Eigen::MatrixXd;
@@ -114,4 +114,4 @@ bool NearTarget::shrink(Way way, Path& path) const {
   return true;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -14,7 +14,7 @@
 #include "carnot/shooting/path/path.h"
 #include "carnot/shooting/problem/dilation.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 class NearTarget {
  public:
@@ -53,4 +53,4 @@ class NearTarget {
   double stretched_;
 };
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -8,21 +8,21 @@
 #include "carnot/shooting/shoot/end_point.h"
 #include "carnot/shooting/shoot/multiple_shooting.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 constexpr int kSegments = 8;    // at least; divides the intervals of a path
 constexpr long kFewSteps = 16;  // of the method over the whole time, at least
 
+// Which of two failures came further is told by the order of Reason.
 void come_to(Reason& furthest, Reason reason) { furthest = std::max(furthest, reason); }
 
 // Joins the knots on a refined path. Where a segment cannot be integrated, or magnifies too much
 // for Newton's method to keep its digits, they are set closer together.
-std::optional<Extremal> join(const BoundaryValueProblem& problem,
-                             const GeodesicOptions& options,
-                             const Refinement& refined,
-                             int patience,
-                             Reason& furthest) {
+Outcome join(const BoundaryValueProblem& problem,
+             const GeodesicOptions& options,
+             const Refinement& refined,
+             int patience) {
   constexpr double kMaxGrowth = 1e5;
   constexpr int kIntervalsPerSegment = 32;
   constexpr int kIntervalsPerStep = 8;
@@ -32,16 +32,15 @@ std::optional<Extremal> join(const BoundaryValueProblem& problem,
   shooting.max_growth = kMaxGrowth;
   if (options.minimiser == "newton") shooting.max_iterations = patience;
   shooting.steps = std::max<long>(kFewSteps, refined.intervals / kIntervalsPerStep);
+  Reason furthest = Reason::kNone;
   int segments = std::max(kSegments, refined.intervals / kIntervalsPerSegment);
   for (int attempt = 0; attempt < kAttempts && segments <= refined.path.intervals; ++attempt) {
     Knots knots = knots_of(refined.path, segments);
     const Shooting joined = shoot(problem, shooting, knots);
     if (joined.converged) {
-      Reason why = Reason::kNone;
-      auto extremal =
-          verify(problem, std::move(knots), 2 * shooting.steps, options.tolerance, &why);
-      come_to(furthest, why);
-      return extremal;
+      Outcome verified = verify(problem, std::move(knots), 2 * shooting.steps, options.tolerance);
+      if (!verified.extremal) come_to(verified.reason, furthest);
+      return verified;
     }
     const bool begun = joined.iterations > 0 || joined.growth > 0;
     come_to(furthest, begun ? Reason::kNotJoined : Reason::kFlowFailed);
@@ -49,14 +48,14 @@ std::optional<Extremal> join(const BoundaryValueProblem& problem,
     segments *= 2;
     shooting.steps = begun ? std::max<long>(shooting.steps, segments) : 2 * shooting.steps;
   }
-  return std::nullopt;
+  return {std::nullopt, furthest};
 }
 
 }  // namespace
 
-std::optional<Extremal> shoot_along(const BoundaryValueProblem& problem,
-                                    const GeodesicOptions& options,
-                                    const Path& path) {
+Outcome shoot_along(const BoundaryValueProblem& problem,
+                    const GeodesicOptions& options,
+                    const Path& path) {
   constexpr double kPart = 1e-6;  // of the distance; near enough to be verified
   const int n = path.dof;
   const double h = problem.time / path.intervals;
@@ -69,41 +68,44 @@ std::optional<Extremal> shoot_along(const BoundaryValueProblem& problem,
   problem.dynamics.momentum(0, problem.from.data(), velocity.data(), lambda.data(), p0.data());
   const double distance = largest_difference(problem.from.data(), problem.to.data(), n);
   Eigen::MatrixXd tangent;
-  if (!(correct(problem, kFewSteps, 0, p0, tangent) <= kPart * distance)) return std::nullopt;
+  if (!(correct(problem, kFewSteps, 0, p0, tangent) <= kPart * distance)) {
+    return {std::nullopt, Reason::kNotJoined};
+  }
   return verify(problem, knots_of(problem, p0, 1, kFewSteps), 2 * kFewSteps, options.tolerance);
 }
 
-std::optional<Extremal> polish(const BoundaryValueProblem& problem,
-                               const GeodesicOptions& options,
-                               const Path& path,
-                               Reason* reason) {
+Outcome polish(const BoundaryValueProblem& problem,
+               const GeodesicOptions& options,
+               const Path& path) {
   // From a grid that is fine enough Newton's method takes two or three iterations. Where it takes
   // more a finer grid, which is cheaper than the flow, comes first.
   constexpr std::array kPatience{4, 8, 12};
   RefinementOptions refinement;
   refinement.enough = 4e-2;
-  Reason furthest = Reason::kNotRefined;
-  std::optional<Extremal> extremal;
+  Outcome outcome{std::nullopt, Reason::kNotRefined};
   for (const int patience : kPatience) {
     const Refinement refined = refine(problem, refinement, path);
     if (!refined.found) break;
-    extremal = join(problem, options, refined, patience, furthest);
-    if (extremal || !refined.settled) break;
+    Outcome joined = join(problem, options, refined, patience);
+    come_to(outcome.reason, joined.reason);
+    outcome.extremal = std::move(joined.extremal);
+    if (outcome.extremal || !refined.settled) break;
     refinement.enough = 0.2 * refined.change;
   }
   // With large multipliers knots may join what needs none.
-  if (!extremal || extremal->geodesic.verification == Verification::kKnots) {
-    auto along = shoot_along(problem, options, path);
-    if (along && (!extremal || same(*along, *extremal))) extremal = std::move(along);
+  if (!outcome.extremal || outcome.extremal->geodesic.verification == Verification::kKnots) {
+    auto along = shoot_along(problem, options, path).extremal;
+    if (along && (!outcome.extremal || same(*along, *outcome.extremal))) {
+      outcome.extremal = std::move(along);
+    }
   }
-  if (!extremal && reason != nullptr) *reason = furthest;
-  return extremal;
+  if (outcome.extremal) outcome.reason = Reason::kNone;
+  return outcome;
 }
 
-std::optional<Extremal> polish(const BoundaryValueProblem& problem,
-                               const GeodesicOptions& options,
-                               const Knots& knots,
-                               Reason* reason) {
+Outcome polish(const BoundaryValueProblem& problem,
+               const GeodesicOptions& options,
+               const Knots& knots) {
   ShootingOptions shooting;
   std::vector<std::string> ways{options.minimiser};
   if (ways.front() == "newton") ways.emplace_back("ceres");  // which reaches further
@@ -117,14 +119,12 @@ std::optional<Extremal> polish(const BoundaryValueProblem& problem,
         come_to(furthest, Reason::kNotJoined);
         continue;
       }
-      Reason why = Reason::kNone;
-      auto extremal = verify(problem, std::move(joined), 2 * kFewSteps, options.tolerance, &why);
-      if (extremal) return extremal;
-      come_to(furthest, why);
+      Outcome verified = verify(problem, std::move(joined), 2 * kFewSteps, options.tolerance);
+      if (verified.extremal) return verified;
+      come_to(furthest, verified.reason);
     }
   }
-  if (reason != nullptr) *reason = furthest;
-  return std::nullopt;
+  return {std::nullopt, furthest};
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -1,34 +1,25 @@
-// The search for extremals: the growing list of those that are distinct.
+// The search for extremals, round by round.
 //
 // Rounds of starts are relaxed, tightened and, where new, polished and verified; rounds of near
-// hits follow where more than the best is wanted. The order of the starts decides the order of the
-// list, so it does not depend on the number of threads.
+// hits follow where more than the best is wanted. What is found goes into two lists
+// (extremal_list.h, discrete_list.h), and stopping_policy.h says when it is enough. The order of
+// the starts decides the order of the lists, so it does not depend on the number of threads.
 #pragma once
 
 #include <limits>
 #include <optional>
 #include <vector>
 
-#include "carnot/numerics/parallel.h"
-#include "carnot/shooting/extremal/symmetry.h"
-#include "carnot/shooting/extremal/verification.h"
-#include "carnot/shooting/geodesic_options.h"
-#include "carnot/shooting/path/path.h"
-#include "carnot/shooting/reason.h"
-#include "carnot/shooting/search/near_target.h"
-#include "carnot/shooting/shoot/knots.h"
+#include "carnot/shooting/search/discrete_list.h"
+#include "carnot/shooting/search/relaxed_start.h"
+#include "carnot/shooting/search/stopping_policy.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 class Search {
  public:
   // Keeps references to both.
-  Search(const BoundaryValueProblem& problem, const GeodesicOptions& options)
-      : problem_(problem),
-        options_(options),
-        threads_(thread_count(options.threads)),
-        symmetries_(symmetries_of(problem)),
-        near_(NearTarget::of(problem)) {}
+  Search(const BoundaryValueProblem& problem, const GeodesicOptions& options);
 
   // Runs rounds of starts until the list is good enough. False when interrupted.
   bool run();
@@ -37,122 +28,78 @@ class Search {
   void polish_guess();
 
   // None longer than options.max_length, unless `longer` ones are asked for too.
-  [[nodiscard]] std::vector<Extremal> extremals(bool longer = false) const;
-  // How often each was hit, up to symmetry.
+  [[nodiscard]] std::vector<Extremal> extremals(bool longer = false) const {
+    return extremals_.up_to(longer ? std::numeric_limits<double>::infinity() : options_.max_length);
+  }
+  // How often each was hit, up to symmetry, and how often each that was given up.
   [[nodiscard]] std::vector<int> hits() const;
-  [[nodiscard]] int starts() const { return starts_; }
-  [[nodiscard]] int converged() const { return converged_; }
+  [[nodiscard]] int starts() const { return tally_.starts; }
+  [[nodiscard]] int converged() const { return tally_.converged; }
   // How many starts ran into a singularity of the coordinates.
-  [[nodiscard]] int blocked() const { return blocked_; }
+  [[nodiscard]] int blocked() const { return tally_.blocked; }
   // How far the best attempt came that did not become an extremal.
   [[nodiscard]] Reason furthest() const { return furthest_; }
-  // The discrete extremal of least action; null where there is none. And the least residual that a
-  // path was tightened to, relative to its momenta.
-  [[nodiscard]] const Path* nearest_discrete() const;
+  // The discrete extremal of least action; null where there is none.
+  [[nodiscard]] const Path* nearest_discrete() const { return discrete_.least(); }
+  // The least residual that a path was tightened to, relative to its momenta.
   [[nodiscard]] double least_residual() const { return least_residual_; }
 
  private:
   static constexpr int kSegments = 8;      // of multiple shooting; divides the intervals of a path
   static constexpr long kFirstSteps = 32;  // of the method over [0, T]
 
-  static constexpr int kNone = -1;
-  static constexpr int kPending = -2;
-  static constexpr int kTooLong = -3;
-
-  // A relaxed path.
-  struct Candidate {
-    bool found = false;    // it satisfies the discrete equations
-    bool relaxed = false;  // or it joins the ends of the problem and nearly does
-    bool blocked = false;  // the coordinates end where it went
-    int stiffness = 0;     // how often the penalty had to be raised
-    double residual = std::numeric_limits<double>::infinity();  // relative to the momenta
-    Path path;
-  };
-
-  [[nodiscard]] bool wants_more() const { return options_.all || options_.count > 1; }
-  // Fewer extremals than asked for.
-  [[nodiscard]] bool lacks() const;
-  // The search for one geodesic ends when the least action has been hit often enough, and the more
-  // often the more rivals it has; not while the best extremal is past a conjugate time, since then
-  // a nearby path is better. It ends somewhat sooner where most starts converge, most of them to
-  // one extremal, and nothing comes near its action. A search for more goes on to the limit.
+  // The verified mirror partners, where more than the best extremal is wanted.
+  [[nodiscard]] static ExtremalList::Partners partners_for(const BoundaryValueProblem& problem,
+                                                           const GeodesicOptions& options,
+                                                           const StoppingPolicy& policy);
+  // Whether the search has seen enough. Notes whether the best extremal is past a conjugate time:
+  // then a nearby path is better, and the search goes on from there.
   [[nodiscard]] bool settled();
   void relax_round(int count);
   // The same from momenta, where there is no transcription.
   void momentum_round(int count);
-  // Along the straight line, by polish.h; to near targets, whose paths are relaxed to others.
+  // Shoots along the straight line. This helps where paths are relaxed to another target.
   void shoot_straight();
-  // From the path of least action, of those that Newton's method on the grid did not make discrete
-  // extremals of.
-  void shoot_along_relaxed(const std::vector<Candidate>& candidates);
+  // Newton's method on the grid did not make discrete extremals of some relaxed paths. Shoots along
+  // the one of least action among these.
+  void shoot_along_relaxed(const std::vector<RelaxedStart>& starts);
   // Goes down from the best extremal, which is no minimum. False where that gives nothing better.
   bool descend_round();
-  // Energies from that of the shortest extremal to twice that, or to the longest one; in every
-  // second round to that of the largest length, where one is asked for.
+  // Near hits (sweep.h) on energies from that of the shortest extremal to twice that, or to that of
+  // the longest one; in every second round to that of the largest length, where one is asked for.
   void sweep_round(int round);
-  // By multiple shooting from the trajectories themselves, those that Newton's method on the grid
-  // did not make discrete extremals of: grids do not see what happens where the frame loses rank.
-  void shoot_near_hits(const std::vector<Path>& paths, const std::vector<Candidate>& candidates);
+  // Grids do not see what happens where the frame loses rank. So the near hits of which Newton's
+  // method on the grid did not make discrete extremals are joined by multiple shooting.
+  void shoot_near_hits(const std::vector<Path>& paths, const std::vector<RelaxedStart>& tightened);
+
   // What became of new discrete extremals.
   struct Polished {
     int good = 0;
     int failed = 0;  // mostly artefacts of a coarse grid
   };
-  // Polishes what is new among the candidates and adds it to the list.
-  Polished absorb(const std::vector<Candidate>& candidates);
-  // Those of discrete_ that are worth polishing next, of the pending ones `fresh`; the others wait
-  // or, where only the least action is wanted and theirs is clearly more, are given up.
-  std::vector<std::size_t> next_to_polish(std::vector<std::size_t>& fresh);
-  [[nodiscard]] Candidate relax_start(int i) const;
-  [[nodiscard]] std::size_t best() const;
-  // What polishing gave, and where it ended if it did not give anything.
-  struct Outcome {
-    std::optional<Extremal> extremal;
-    Reason reason = Reason::kNone;
-  };
-  // Of extremal `index`, if it is one.
-  void count_hit(int index);
-  // The same as below, and remembers how far it came.
-  int add(const Outcome& outcome);
-  // Adds what is new, and its mirror partners. Returns the index in the list, or -1.
-  int add(const std::optional<Extremal>& extremal, int partner_of = kNone);
-  // The one that stands for it and its mirror partners.
-  [[nodiscard]] int root(int index) const {
-    while (partner_of_[index] >= 0) index = partner_of_[index];
-    return index;
-  }
-  // Index of a discrete extremal with the same nodes, or with those of its mirror partner, which
-  // add() finds by itself; discrete_.size() when it is new.
-  [[nodiscard]] std::size_t find_discrete(const Path& path) const;
-  static bool same_nodes(const Path& a, const Path& b);
-
-  // A discrete extremal that has been seen.
-  struct Discrete {
-    Path path;
-    double action = 0;
-    int extremal = kPending;  // the one it became, kNone, kPending or kTooLong,
-    int pending_hits = 1;     // and how often it was seen before it became one
-    int descents = 0;         // how often the ways down from it were taken, on finer grids each
-  };
+  // Polishes what is new among paths that were tightened, and adds it to the list.
+  Polished absorb(const std::vector<RelaxedStart>& starts);
+  // Adds the path to the discrete extremals where it is new. Else counts it as a hit.
+  void note(const Path& path, std::vector<std::size_t>& fresh);
+  void polish_all(const std::vector<std::size_t>& indices, Polished& tally);
+  // Adds an extremal that a start led to, if it did, and counts the hit.
+  void take(const std::optional<Extremal>& extremal);
+  // The same, and remembers how far an attempt came that failed.
+  void take(const Outcome& outcome);
 
   const BoundaryValueProblem& problem_;
   const GeodesicOptions& options_;
   int threads_;
-  std::vector<ProblemSymmetry> symmetries_;
   std::optional<NearTarget> near_;  // where paths are relaxed to a target further away
-  std::vector<Extremal> extremals_;
-  std::vector<int> hits_;
-  std::vector<int> partner_of_;  // the extremal whose mirror image it is, or kNone
-  int stiffness_ = 0;            // how often most starts of a round had to raise the penalty
-  int intervals_ = 32;           // of the grid that paths are relaxed on
-  bool descends_ = false;        // the best extremal so far is no minimum
-  std::vector<Discrete> discrete_;
+  StoppingPolicy policy_;
+  ExtremalList extremals_;
+  DiscreteList discrete_;
+  SearchTally tally_;
   Reason furthest_ = Reason::kNone;
   double least_residual_ = std::numeric_limits<double>::infinity();
-  int starts_ = 0;
-  int drawn_ = 0;  // of the sequence of starts; the others are near hits
-  int blocked_ = 0;
-  int converged_ = 0;
+  int stiffness_ = 0;      // how often most starts of a round had to raise the penalty
+  int intervals_ = 32;     // of the grid that paths are relaxed on
+  bool descends_ = false;  // the best extremal so far is no minimum
 };
 
-}  // namespace carnot
+}  // namespace carnot::internal

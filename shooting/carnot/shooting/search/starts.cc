@@ -9,7 +9,7 @@
 #include "carnot/shooting/problem/manifold.h"
 #include "carnot/shooting/problem/scales.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 constexpr int kModes = 3;
@@ -110,4 +110,4 @@ Start make_start(const BoundaryValueProblem& problem, std::uint64_t seed, int i,
   return start;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -22,7 +22,7 @@
 #include "carnot/shooting/path/path.h"
 #include "carnot/shooting/path/relaxation.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 struct Start {
   Path path;
@@ -35,4 +35,4 @@ Start make_start(const BoundaryValueProblem& problem,
                  int i,
                  int intervals = 32);
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -12,7 +12,7 @@
 #include "carnot/shooting/shoot/end_point.h"
 #include "carnot/shooting/shoot/knots.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 struct Draw {
@@ -152,4 +152,4 @@ std::vector<Path> near_hits(const BoundaryValueProblem& problem,
   return paths;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -13,7 +13,7 @@
 #include "carnot/shooting/boundary_value_problem.h"
 #include "carnot/shooting/path/path.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 struct SweepOptions {
   std::uint64_t seed = 0;
@@ -32,4 +32,4 @@ std::vector<Path> near_hits(const BoundaryValueProblem& problem,
                             const SweepOptions& options,
                             int threads);
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -7,7 +7,7 @@
 #include "carnot/shooting/shoot/multiple_shooting.h"
 #include "carnot/shooting/shoot/shooting_equations.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 // Parameter blocks: q_i, p_i and, but for the last segment, q_{i+1}, p_{i+1}.
@@ -121,4 +121,4 @@ Shooting shoot_with_ceres(const BoundaryValueProblem& problem,
   return result;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

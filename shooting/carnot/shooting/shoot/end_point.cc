@@ -1,12 +1,12 @@
 #include "carnot/shooting/shoot/end_point.h"
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace carnot {
+#include "carnot/shooting/linear/dense.h"
+
+namespace carnot::internal {
 
 double largest_difference(const double* a, const double* b, int count) {
   double largest = 0;
@@ -39,15 +39,11 @@ Eigen::MatrixXd kernel_of(const Units& units, const Eigen::MatrixXd& raw, double
   const double p_size = tangent.bottomRows(n).norm();
   Eigen::MatrixXd columns = tangent;
   if (q_size > 0 && p_size > 0) columns.topRows(n) *= p_size / q_size;
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns);
-  const Eigen::MatrixXd plane = qr.householderQ() * Eigen::MatrixXd::Identity(2 * n, n);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(plane.topRows(n), Eigen::ComputeFullV);
-  const auto nullity = (svd.singularValues().array() <= tolerance).count();
+  const QrFactors plane = qr_factors(columns);
+  const RightSingular still = right_singular(plane.q.topRows(n));
+  const auto nullity = (still.values.array() <= tolerance).count();
   if (nullity == 0) return {n, 0};
-  const Eigen::MatrixXd kernel = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>().solve(
-      svd.matrixV().rightCols(nullity));
-  return Eigen::HouseholderQR<Eigen::MatrixXd>(units.momenta(kernel)).householderQ() *
-         Eigen::MatrixXd::Identity(n, nullity);
+  return orthonormal(units.momenta(solve_upper(plane.r, still.vectors.rightCols(nullity))));
 }
 
 double correct(const BoundaryValueProblem& problem,
@@ -80,10 +76,10 @@ double correct(const BoundaryValueProblem& problem,
       cautious = true;
     }
     const Units units(problem, p0.data());
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> inverse;
-    inverse.setThreshold(cautious ? std::max(rank, kCautious) : rank);
-    inverse.compute(units.tangent(tangent).topRows(n));
-    const Eigen::VectorXd step = units.momenta(inverse.solve(units.displacement(residual)));
+    const Eigen::VectorXd step =
+        units.momenta(least_squares(units.tangent(tangent).topRows(n),
+                                    units.displacement(residual),
+                                    cautious ? std::max(rank, kCautious) : rank));
     for (int j = 0; j < n; ++j) trial[j] = p0[j] - step[j];
   }
   return best;
@@ -129,4 +125,4 @@ void reduce(const BoundaryValueProblem& problem,
   tangent = there;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -8,7 +8,7 @@
 #include "carnot/shooting/boundary_value_problem.h"
 #include "carnot/shooting/problem/units.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 // max |a_j - b_j|; NaN when one is not a number.
 double largest_difference(const double* a, const double* b, int count);
@@ -51,4 +51,4 @@ void reduce(const BoundaryValueProblem& problem,
             std::vector<double>& p0,
             Eigen::MatrixXd& tangent);
 
-}  // namespace carnot
+}  // namespace carnot::internal

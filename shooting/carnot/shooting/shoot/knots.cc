@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace carnot {
+namespace carnot::internal {
 
 Knots knots_of(const Path& path, int segments) {
   const int n = path.dof;
@@ -47,4 +47,4 @@ StepPlan knot_plan(const BoundaryValueProblem& problem, int segments, int i, lon
   return StepPlan::equal(i * duration, duration, std::max(1L, (steps + segments - 1) / segments));
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -6,7 +6,7 @@
 #include "carnot/shooting/boundary_value_problem.h"
 #include "carnot/shooting/path/path.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 // Knots i = 0..segments at times i T / segments. z is (segments + 1) x 2n, rows (q, p); the last
 // row is what the last segment's flow gives, so q there is near `to` but is not set to it.
@@ -36,4 +36,4 @@ Knots knots_of(const Trajectory& samples, int segments);
 // The plan of segment i when the whole time takes about `steps` steps.
 StepPlan knot_plan(const BoundaryValueProblem& problem, int segments, int i, long steps);
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -1,8 +1,8 @@
 #include "carnot/shooting/shoot/multiple_shooting.h"
 
-namespace carnot {
+namespace carnot::internal {
 
-std::vector<std::string> minimisers() {
+std::vector<std::string> names_of_minimisers() {
   return {"newton",
           "ceres",
           "nlopt",
@@ -19,4 +19,4 @@ Shooting shoot(const BoundaryValueProblem& problem, const ShootingOptions& optio
   return shoot_with_nlopt(problem, options, knots);
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -14,7 +14,7 @@
 
 #include "carnot/shooting/shoot/knots.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 struct ShootingOptions {
   std::string minimiser = "newton";
@@ -35,7 +35,7 @@ struct Shooting {
 Shooting shoot(const BoundaryValueProblem& problem, const ShootingOptions& options, Knots& knots);
 
 // Names accepted by ShootingOptions::minimiser.
-std::vector<std::string> minimisers();
+std::vector<std::string> names_of_minimisers();
 
 // The ways; `shoot` chooses.
 Shooting shoot_with_newton(const BoundaryValueProblem& problem,
@@ -48,4 +48,4 @@ Shooting shoot_with_nlopt(const BoundaryValueProblem& problem,
                           const ShootingOptions& options,
                           Knots& knots);
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -9,7 +9,7 @@
 #include "carnot/shooting/shoot/multiple_shooting.h"
 #include "carnot/shooting/shoot/shooting_equations.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 // The unknowns p(0), z_1, ..., in units of their scale, and the jumps.
@@ -120,4 +120,4 @@ Shooting shoot_with_newton(const BoundaryValueProblem& problem,
   return result;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -12,7 +12,7 @@
 #include "carnot/shooting/shoot/multiple_shooting.h"
 #include "carnot/shooting/shoot/shooting_equations.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 // Residuals and Jacobian of all segments at stacked unknowns, each divided by its own scale.
@@ -190,4 +190,4 @@ Shooting shoot_with_nlopt(const BoundaryValueProblem& problem,
   return result;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace carnot {
+namespace carnot::internal {
 
 ShootingEquations::ShootingEquations(const BoundaryValueProblem& problem,
                                      const Knots& knots,
@@ -57,4 +57,4 @@ bool ShootingEquations::complete(Knots& knots) const {
       .completed();
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

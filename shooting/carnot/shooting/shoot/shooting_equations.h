@@ -9,7 +9,7 @@
 
 #include "carnot/shooting/shoot/knots.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 class ShootingEquations {
  public:
@@ -40,4 +40,4 @@ class ShootingEquations {
   std::vector<double> scale_;
 };
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 // Times of [0, T], `samples` in all, that belong to segment i: [t_i, t_{i+1}), the last one closed.
@@ -63,4 +63,4 @@ FlowSummary survey(const BoundaryValueProblem& problem,
   return total;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -3,7 +3,7 @@
 
 #include "carnot/shooting/shoot/knots.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 // Runs every segment from its own knot; `steps` of the method in all, `samples` equidistant times
 // of [0, T] recorded. Integrals are added up, errors are the largest, and the energy is compared
@@ -13,4 +13,4 @@ FlowSummary survey(const BoundaryValueProblem& problem,
                    long steps,
                    long samples);
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -1,12 +1,11 @@
 #include "carnot/shooting/steer/end_point_model.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <limits>
 
 #include "carnot/shooting/shoot/end_point.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 constexpr long kSteps = 64;
@@ -27,10 +26,9 @@ EndPointModel::EndPointModel(const BoundaryValueProblem& problem, const Vector& 
   };
   jacobian_ = jacobian_at(Vector::Zero(n));
   if (!jacobian_.allFinite()) return;
-  Eigen::FullPivLU<Matrix> lu(jacobian_);
-  lu.setThreshold(kSingular);
-  if (!lu.isInvertible()) return;
-  inverse_ = lu.inverse();
+  const auto inverse = small_inverse_if_regular(jacobian_, kSingular);
+  if (!inverse) return;
+  inverse_ = *inverse;
   const double h = kAside * p0.cwiseAbs().maxCoeff();
   const auto second = [&](const Matrix& after, const Matrix& before) -> Matrix {
     return (after + before - 2 * jacobian_) / (h * h);
@@ -72,12 +70,12 @@ bool EndPointModel::solve(const Vector& change, Prediction& at) const {
     const Vector linear = jacobian_.lazyProduct(x);
     const Vector square = bend.lazyProduct(x) / 2;
     const Vector cube = twist.lazyProduct(x) / 6;
-    const Eigen::PartialPivLU<Matrix> lu(jacobian_ + bend + twist / 2);
-    const Vector step = lu.solve(linear + square + cube - change);
+    const Matrix slope = jacobian_ + bend + twist / 2;
+    const Vector step = small_lu_solve(slope, linear + square + cube - change);
     x -= step;
     if (!(step.norm() <= x.norm())) return false;
     if (step.norm() > kClose * x.norm()) continue;
-    at.inverse = lu.inverse();
+    at.inverse = small_lu_inverse(slope);
     // The terms of a series that goes on as it began.
     const double second = square.cwiseAbs().maxCoeff();
     const double third = cube.cwiseAbs().maxCoeff();
@@ -105,4 +103,4 @@ EndPointModel::Prediction EndPointModel::move_end(const Vector& change) const {
   return reached;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -1,18 +1,18 @@
 // The end point as a cubic polynomial of p0 about a known extremal, and its inverse.
 #pragma once
 
-#include <Eigen/Core>
 #include <vector>
 
 #include "carnot/shooting/boundary_value_problem.h"
+#include "carnot/shooting/linear/dense.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 class EndPointModel {
  public:
-  static constexpr int kMostDof = 16;
-  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostDof, 1>;
-  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostDof, kMostDof>;
+  static constexpr int kMostDof = kMostSmall;
+  using Vector = SmallVector;
+  using Matrix = SmallMatrix;
 
   // From the derivatives of q(T) at p0 (length n <= kMostDof), by n^2 + n + 1 tangent flows; the
   // second and third are differences of the first.
@@ -40,4 +40,4 @@ class EndPointModel {
   std::vector<Matrix> twist_;  // d2J/dp_i dp_j, i <= j: 00, 01, 11, 02, ..; twice that for i < j
 };
 
-}  // namespace carnot
+}  // namespace carnot::internal

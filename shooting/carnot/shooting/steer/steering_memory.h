@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace carnot {
+namespace carnot::internal {
 
 struct SteeringAnswer;
 
@@ -55,4 +55,4 @@ class SteeringMemory {
   std::deque<const Key*> order_;  // of the map, whose nodes stay where they are
 };
 
-}  // namespace carnot
+}  // namespace carnot::internal

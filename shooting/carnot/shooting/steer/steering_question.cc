@@ -6,7 +6,7 @@
 
 #include "carnot/shooting/extremal/symmetry.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 // The angle that the frame of `origin` is turned by.
@@ -91,4 +91,4 @@ void leave_frame(const SceneInfo& info, const double* origin, double* q) {
   for (const int j : symmetries.angles) q[j] += turn;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

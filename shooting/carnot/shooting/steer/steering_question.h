@@ -10,7 +10,7 @@
 
 #include "carnot/scene/scene_info.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 // What holds for all questions.
 struct SteeringRules {
@@ -39,4 +39,4 @@ struct SteeringQuestion {
 // Takes q, in the frame where `origin` is at the origin, back to where `origin` is.
 void leave_frame(const SceneInfo& info, const double* origin, double* q);
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -9,7 +9,7 @@
 #include "carnot/shooting/extremal/ranking.h"
 #include "carnot/shooting/problem/windings.h"
 
-namespace carnot {
+namespace carnot::internal {
 namespace {
 
 SteeringAnswer answer_of(const BoundaryValueProblem& problem, Geodesic geodesic) {
@@ -235,4 +235,4 @@ bool SteeringSearch::point(const SteeringAnswer& answer,
   return true;
 }
 
-}  // namespace carnot
+}  // namespace carnot::internal

@@ -13,7 +13,7 @@
 #include "carnot/shooting/steer/steering_options.h"
 #include "carnot/shooting/steer/steering_question.h"
 
-namespace carnot {
+namespace carnot::internal {
 
 // In the frame of the question.
 struct SteeringAnswer {
@@ -76,4 +76,4 @@ class SteeringSearch {
   std::vector<double> rates_;  // of each coordinate with a period, the largest per length; or 0
 };
 
-}  // namespace carnot
+}  // namespace carnot::internal

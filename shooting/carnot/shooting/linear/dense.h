@@ -1,0 +1,74 @@
+// Decompositions of dense matrices whose sizes are known at run time only.
+//
+// Eigen's decompositions are templates, and the compiler spends seconds on each file that uses one.
+// They are instantiated once, in dense.cc. Everything takes plain matrices and returns results.
+// Nothing here fails: where a matrix is singular the results hold infinities or NaN.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+namespace carnot::internal {
+
+// Matrices of at most kMostSmall rows and columns, which need no allocation.
+inline constexpr int kMostSmall = 16;
+using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostSmall, 1>;
+using SmallMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostSmall, kMostSmall>;
+
+// A B, so that Eigen's product of large matrices is instantiated once, too.
+Eigen::MatrixXd product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+
+// A^-1 b and A^-1, by LU factors with partial pivoting.
+Eigen::VectorXd lu_solve(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
+Eigen::MatrixXd lu_inverse(const Eigen::MatrixXd& a);
+// The same without an allocation.
+SmallVector small_lu_solve(const SmallMatrix& a, const SmallVector& b);
+SmallMatrix small_lu_inverse(const SmallMatrix& a);
+// A^-1 by LU factors with full pivoting. Nothing where a pivot is below `threshold` times the
+// largest one.
+std::optional<SmallMatrix> small_inverse_if_regular(const SmallMatrix& a, double threshold);
+
+// det A by its sign and by the logarithm of its size.
+struct Determinant {
+  int sign = 0;
+  double log_size = 0;
+};
+Determinant determinant_of(const Eigen::MatrixXd& a);
+// The argument of det(A + iB), in (-pi, pi].
+double argument_of_determinant(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+
+// An orthonormal basis of the space that the columns span, as many columns, by Householder's QR.
+Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns);
+// The same basis Q with the upper triangle R: columns = Q R.
+struct QrFactors {
+  Eigen::MatrixXd q;
+  Eigen::MatrixXd r;
+};
+QrFactors qr_factors(const Eigen::MatrixXd& columns);
+// R^-1 B of an upper triangle R.
+Eigen::MatrixXd solve_upper(const Eigen::MatrixXd& r, const Eigen::MatrixXd& b);
+// The direction, of length 1, that n rows of length n + 1 map to zero. Nothing where the least
+// pivot of QR factors with column pivoting is not above `full_rank` times the largest one.
+std::optional<Eigen::VectorXd> kernel_line(const Eigen::MatrixXd& rows, double full_rank);
+
+// A = V diag(values) V' of a symmetric matrix, values ascending.
+struct SymmetricEigen {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;
+};
+SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a);
+
+// Singular values, descending, and the right singular vectors as columns in the same order.
+Eigen::VectorXd singular_values(const Eigen::MatrixXd& a);
+struct RightSingular {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;
+};
+RightSingular right_singular(const Eigen::MatrixXd& a);
+
+// The x of least norm that minimises |A x - b|, where pivots below `threshold` times the largest
+// one count as zero; by a complete orthogonal decomposition.
+Eigen::VectorXd least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, double threshold);
+
+}  // namespace carnot::internal

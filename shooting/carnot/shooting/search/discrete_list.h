@@ -1,0 +1,67 @@
+// The discrete extremals that a search has seen, and what became of each.
+//
+// Polishing costs some hundred times as much as tightening, so a discrete extremal that is known is
+// not polished again; what it became counts as hit instead.
+#pragma once
+
+#include <vector>
+
+#include "carnot/shooting/extremal/symmetry.h"
+#include "carnot/shooting/search/extremal_list.h"
+
+namespace carnot::internal {
+
+enum class Fate {
+  kPending,   // it waits to be polished,
+  kExtremal,  // it became an extremal of the list,
+  kArtefact,  // polishing it gave nothing,
+  kGivenUp    // or its action is clearly more than the least and only that is wanted
+};
+
+struct DiscreteExtremal {
+  Path path;
+  double action = 0;
+  Fate fate = Fate::kPending;
+  std::size_t extremal = 0;  // the index of the one that it became
+  int hits = 1;              // how often it was seen before it became one
+  int descents = 0;          // how often the ways down from it were taken, on finer grids each
+};
+
+class DiscreteList {
+ public:
+  // Keeps a reference to the problem.
+  explicit DiscreteList(const BoundaryValueProblem& problem)
+      : problem_(problem), symmetries_(symmetries_of(problem)) {}
+
+  [[nodiscard]] std::size_t size() const { return list_.size(); }
+  [[nodiscard]] DiscreteExtremal& operator[](std::size_t index) { return list_[index]; }
+  [[nodiscard]] auto begin() { return list_.begin(); }
+  [[nodiscard]] auto end() { return list_.end(); }
+  [[nodiscard]] auto begin() const { return list_.begin(); }
+  [[nodiscard]] auto end() const { return list_.end(); }
+
+  // The index of a path with the same nodes, or with those of a mirror partner, on the same grid;
+  // size() where the path is new. All members of one family of `extremals` count as the same.
+  [[nodiscard]] std::size_t find(const Path& path, const ExtremalList& extremals) const;
+  // Adds a path that is new. Returns its index.
+  std::size_t add(const Path& path);
+
+  // Takes out of `pending` those that may have the least action, as far as their grids tell.
+  [[nodiscard]] std::vector<std::size_t> take_promising(std::vector<std::size_t>& pending) const;
+  // Gives these up. Returns how often they were seen.
+  int give_up(const std::vector<std::size_t>& pending);
+
+  // How often each of those given up was seen.
+  [[nodiscard]] std::vector<int> hits_given_up() const;
+  // The path of least action; null where there is none.
+  [[nodiscard]] const Path* least() const;
+
+ private:
+  [[nodiscard]] double action_of(const Path& path) const;
+
+  const BoundaryValueProblem& problem_;
+  std::vector<ProblemSymmetry> symmetries_;
+  std::vector<DiscreteExtremal> list_;
+};
+
+}  // namespace carnot::internal

@@ -1,0 +1,36 @@
+// One start of a search: a path that is relaxed and tightened.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include "carnot/shooting/boundary_value_problem.h"
+#include "carnot/shooting/path/path.h"
+#include "carnot/shooting/search/near_target.h"
+
+namespace carnot::internal {
+
+struct RelaxedStart {
+  bool found = false;    // the path satisfies the discrete equations,
+  bool relaxed = false;  // or it joins the ends of the problem and nearly satisfies them
+  bool blocked = false;  // the coordinates end where the path went
+  int stiffness = 0;     // how often the penalty had to be raised
+  double residual = std::numeric_limits<double>::infinity();  // relative to the momenta
+  Path path;
+};
+
+struct RelaxedStartOptions {
+  std::uint64_t seed = 0;
+  int intervals = 32;
+  int stiffness = 0;  // how often the penalty is raised before the first attempt
+};
+
+// Start `i` of the sequence (starts.h). Where there is a near target, the path is relaxed to the
+// easy problem in its stead and then shrunk.
+RelaxedStart relaxed_start(const BoundaryValueProblem& problem,
+                           const std::optional<NearTarget>& near,
+                           const RelaxedStartOptions& options,
+                           int i);
+
+}  // namespace carnot::internal

@@ -1,0 +1,56 @@
+// When a search for extremals has seen enough.
+//
+// The search for one geodesic ends when the least action has been hit often enough, and the more
+// often the more rivals it has. It ends somewhat sooner where most starts converge, most of them to
+// one extremal, and nothing comes near its action. A search for more goes on to a limit.
+#pragma once
+
+#include "carnot/shooting/geodesic_options.h"
+#include "carnot/shooting/search/extremal_list.h"
+
+namespace carnot::internal {
+
+// What a search has done so far.
+struct SearchTally {
+  int starts = 0;     // that were tried, near hits and ways down among them
+  int drawn = 0;      // of the sequence of starts
+  int blocked = 0;    // that ran into a singularity of the coordinates
+  int converged = 0;  // that led to an extremal, or to one that was given up
+};
+
+class StoppingPolicy {
+ public:
+  // `by_paths`: starts are paths, not momenta. `near`: paths are relaxed to a target further away.
+  StoppingPolicy(const GeodesicOptions& options, bool by_paths, bool near);
+
+  // More than the extremal of least action.
+  [[nodiscard]] bool wants_more() const { return wants_more_; }
+  // Fewer than asked for.
+  [[nodiscard]] bool lacks(std::size_t extremals) const { return all_ || extremals < count_; }
+  // Rounds of near hits after the starts.
+  [[nodiscard]] int sweeps() const { return sweeps_; }
+
+  // How many starts of the sequence may still be drawn. Those that ran into the end of the chart do
+  // not count, or not before there are many.
+  [[nodiscard]] int left(const SearchTally& tally) const;
+  // How many to draw in the next round: fewer where the search may end after it.
+  [[nodiscard]] int round(const SearchTally& tally) const;
+  // The fraction done, before the sweeps.
+  [[nodiscard]] double share(const SearchTally& tally) const;
+
+  // Whether so many starts may be enough, whatever they led to.
+  [[nodiscard]] bool may_end(const SearchTally& tally) const;
+  // Whether they are. The best extremal is known to be a local minimum.
+  [[nodiscard]] bool ends(const SearchTally& tally, const Competition& competition) const;
+
+ private:
+  bool wants_more_;
+  bool all_;
+  std::size_t count_;
+  bool given_;  // the number of starts is that of the options
+  bool near_;
+  int limit_;
+  int sweeps_;
+};
+
+}  // namespace carnot::internal

@@ -1,0 +1,136 @@
+// Decompositions by what they promise, on matrices whose decompositions are known.
+#include "carnot/shooting/linear/dense.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <random>
+
+namespace carnot::internal {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kRounded = 1e-13;  // of matrices of six rows with entries of size one
+
+MatrixXd random_matrix(int rows, int columns, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  return MatrixXd::NullaryExpr(rows, columns, [&] { return normal(random); });
+}
+
+void expect_equal(const MatrixXd& a, const MatrixXd& b, double tolerance = kRounded) {
+  ASSERT_EQ(a.rows(), b.rows());
+  ASSERT_EQ(a.cols(), b.cols());
+  EXPECT_LE((a - b).cwiseAbs().maxCoeff(), tolerance) << a << "\n\n" << b;
+}
+
+// Diagonals of 4 keep them far from singular.
+MatrixXd regular(int n) { return random_matrix(n, n, 1) + 4 * MatrixXd::Identity(n, n); }
+
+TEST(Dense, LuSolvesAndInverts) {
+  const MatrixXd a = regular(6);
+  const VectorXd x = random_matrix(6, 1, 2);
+  expect_equal(lu_solve(a, a * x), x);
+  expect_equal(lu_inverse(a) * a, MatrixXd::Identity(6, 6));
+  const SmallMatrix small = a;
+  expect_equal(small_lu_solve(small, a * x), x);
+  expect_equal(small_lu_inverse(small) * small, MatrixXd::Identity(6, 6));
+}
+
+TEST(Dense, InverseOnlyWhereRegular) {
+  const SmallMatrix a = regular(5);
+  const auto inverse = small_inverse_if_regular(a, 1e-11);
+  ASSERT_TRUE(inverse);
+  expect_equal(*inverse * a, MatrixXd::Identity(5, 5));
+  SmallMatrix singular = a;
+  singular.col(3) = singular.col(1);
+  EXPECT_FALSE(small_inverse_if_regular(singular, 1e-11));
+  // Just above and just below the threshold.
+  SmallMatrix nearly = SmallMatrix::Identity(2, 2);
+  nearly(1, 1) = 1.01e-6;
+  EXPECT_TRUE(small_inverse_if_regular(nearly, 1e-6));
+  nearly(1, 1) = 0.99e-6;
+  EXPECT_FALSE(small_inverse_if_regular(nearly, 1e-6));
+}
+
+TEST(Dense, DeterminantBySignAndSize) {
+  MatrixXd a(3, 3);
+  a << 0, 2, 0, 3, 0, 0, 0, 0, 5;  // one exchange of rows: -30
+  EXPECT_EQ(determinant_of(a).sign, -1);
+  EXPECT_NEAR(determinant_of(a).log_size, std::log(30), kRounded);
+  a.row(2) *= -1;
+  EXPECT_EQ(determinant_of(a).sign, 1);
+  // Far beyond what a double holds.
+  const MatrixXd large = 1e200 * MatrixXd::Identity(4, 4);
+  EXPECT_NEAR(determinant_of(large).log_size, 800 * std::log(10), 1e-9);
+}
+
+TEST(Dense, ArgumentOfAComplexDeterminant) {
+  const VectorXd angles = VectorXd::LinSpaced(3, 0.2, 0.9);
+  const MatrixXd a = angles.array().cos().matrix().asDiagonal();
+  const MatrixXd b = angles.array().sin().matrix().asDiagonal();
+  EXPECT_NEAR(argument_of_determinant(a, b), angles.sum(), kRounded);
+  EXPECT_NEAR(argument_of_determinant(-MatrixXd::Identity(1, 1), MatrixXd::Zero(1, 1)),
+              std::numbers::pi,
+              kRounded);
+}
+
+TEST(Dense, QrFactorsAndTheirBasis) {
+  const MatrixXd columns = random_matrix(6, 3, 3);
+  const QrFactors factors = qr_factors(columns);
+  expect_equal(factors.q.transpose() * factors.q, MatrixXd::Identity(3, 3));
+  expect_equal(factors.q * factors.r, columns);
+  expect_equal(orthonormal(columns), factors.q);
+  const MatrixXd right = random_matrix(3, 2, 4);
+  expect_equal(factors.r * solve_upper(factors.r, right), right);
+}
+
+TEST(Dense, KernelOfOneRowTooFew) {
+  MatrixXd rows = random_matrix(4, 5, 5);
+  const auto kernel = kernel_line(rows, 1e-11);
+  ASSERT_TRUE(kernel);
+  EXPECT_NEAR(kernel->norm(), 1, kRounded);
+  expect_equal(rows * *kernel, VectorXd::Zero(4));
+  rows.row(3) = rows.row(0) - 2 * rows.row(1);  // the kernel is a plane
+  EXPECT_FALSE(kernel_line(rows, 1e-11));
+}
+
+TEST(Dense, SymmetricEigenvaluesAscend) {
+  const MatrixXd basis = orthonormal(random_matrix(4, 4, 6));
+  const VectorXd values = Eigen::Vector4d(-3, 0, 1, 7);
+  const MatrixXd a = basis * values.asDiagonal() * basis.transpose();
+  const SymmetricEigen eigen = symmetric_eigen(a);
+  expect_equal(eigen.values, values);
+  expect_equal(eigen.vectors * eigen.values.asDiagonal() * eigen.vectors.transpose(), a);
+}
+
+TEST(Dense, SingularValuesDescend) {
+  const MatrixXd left = orthonormal(random_matrix(6, 3, 7));
+  const MatrixXd right = orthonormal(random_matrix(3, 3, 8));
+  const VectorXd values = Eigen::Vector3d(5, 0.5, 0);
+  const MatrixXd a = left * values.asDiagonal() * right.transpose();
+  expect_equal(singular_values(a), values);
+  const RightSingular found = right_singular(a);
+  expect_equal(found.values, values);
+  expect_equal(a * found.vectors.col(2), VectorXd::Zero(6));
+  EXPECT_NEAR((a * found.vectors.col(0)).norm(), 5, kRounded);
+}
+
+TEST(Dense, LeastSquaresHaveTheLeastNorm) {
+  MatrixXd a(2, 3);
+  a << 1, 0, 0, 0, 2, 0;  // the third unknown is free
+  expect_equal(least_squares(a, Eigen::Vector2d(3, 4), 1e-13), Eigen::Vector3d(3, 2, 0));
+  // Without a solution, the nearest.
+  expect_equal(least_squares(a.transpose(), Eigen::Vector3d(1, 2, 9), 1e-13),
+               Eigen::Vector2d(1, 1));
+  // The second row counts as zero under a generous threshold.
+  a(1, 1) = 1e-6;
+  expect_equal(least_squares(a, Eigen::Vector2d(3, 4), 1e-4), Eigen::Vector3d(3, 0, 0));
+}
+
+}  // namespace
+}  // namespace carnot::internal

@@ -1,0 +1,87 @@
+#include "carnot/shooting/search/stopping_policy.h"
+
+#include <gtest/gtest.h>
+
+namespace carnot::internal {
+namespace {
+
+GeodesicOptions options_for(int count, bool all = false, int starts = 0) {
+  GeodesicOptions options;
+  options.count = count;
+  options.all = all;
+  options.starts = starts;
+  return options;
+}
+
+TEST(StoppingPolicy, StartsThatAreGivenAreAllDrawn) {
+  const StoppingPolicy policy(options_for(1, false, 20), true, false);
+  EXPECT_EQ(policy.left({}), 20);
+  EXPECT_EQ(policy.left({16, 16, 10, 16}), 4) << "blocked ones count";
+  EXPECT_EQ(policy.round({16, 16, 0, 16}), 4);
+  EXPECT_FALSE(policy.may_end({16, 16, 0, 16}));
+  EXPECT_EQ(policy.sweeps(), 0);
+}
+
+TEST(StoppingPolicy, BlockedStartsAreMadeUpFor) {
+  const StoppingPolicy policy(options_for(1), true, false);
+  const int limit = policy.left({});
+  EXPECT_EQ(policy.left({8, 8, 5, 0}), limit - 8 + 5);
+  EXPECT_EQ(policy.left({0, 0, 100 * limit, 0}), 3 * limit) << "up to twice the limit";
+}
+
+TEST(StoppingPolicy, RoundsAreShortWhereTheSearchMayEnd) {
+  const StoppingPolicy one(options_for(1), true, false);
+  const StoppingPolicy more(options_for(4), true, false);
+  EXPECT_EQ(one.round({}), 8);
+  EXPECT_EQ(one.round({8, 8, 0, 8}), 4);
+  EXPECT_EQ(one.round({16, 16, 0, 16}), 8);
+  EXPECT_EQ(more.round({8, 8, 0, 8}), 8);
+}
+
+TEST(StoppingPolicy, SharesGoFromNoneToAll) {
+  const StoppingPolicy one(options_for(1, false, 20), true, false);
+  EXPECT_EQ(one.share({}), 0);
+  EXPECT_EQ(one.share({10, 10, 0, 0}), 0.5);
+  EXPECT_EQ(one.share({20, 20, 0, 0}), 1);
+  const StoppingPolicy more(options_for(4), true, false);
+  ASSERT_GT(more.sweeps(), 0);
+  EXPECT_EQ(more.share({1000, more.left({}), 0, 0}), 0.5) << "half of it is for the sweeps";
+}
+
+TEST(StoppingPolicy, OnlyPathsAreSwept) {
+  EXPECT_EQ(StoppingPolicy(options_for(4), false, false).sweeps(), 0);
+  EXPECT_EQ(StoppingPolicy(options_for(4, false, 30), true, false).sweeps(), 0);
+}
+
+TEST(StoppingPolicy, LacksWhatWasAskedFor) {
+  EXPECT_TRUE(StoppingPolicy(options_for(4), true, false).lacks(3));
+  EXPECT_FALSE(StoppingPolicy(options_for(4), true, false).lacks(4));
+  EXPECT_TRUE(StoppingPolicy(options_for(1, true), true, false).lacks(1000));
+}
+
+TEST(StoppingPolicy, MayEndEarlyWhereMostConverge) {
+  const StoppingPolicy one(options_for(1), true, false);
+  EXPECT_FALSE(one.may_end({8, 8, 0, 8}));
+  EXPECT_TRUE(one.may_end({12, 12, 0, 9}));
+  EXPECT_FALSE(one.may_end({12, 12, 0, 8}));
+  EXPECT_TRUE(one.may_end({16, 16, 0, 0}));
+  EXPECT_FALSE(StoppingPolicy(options_for(4), true, false).may_end({12, 12, 0, 12}));
+  const StoppingPolicy near(options_for(1), true, true);
+  EXPECT_FALSE(near.may_end({23, 23, 0, 23}));
+  EXPECT_TRUE(near.may_end({24, 24, 0, 0}));
+}
+
+TEST(StoppingPolicy, EndsWhenTheLeastActionIsHitOftenEnough) {
+  const StoppingPolicy policy(options_for(1), true, false);
+  EXPECT_TRUE(policy.ends({16, 16, 0, 16}, {3, 1}));
+  EXPECT_FALSE(policy.ends({16, 16, 0, 16}, {2, 1}));
+  EXPECT_FALSE(policy.ends({16, 16, 0, 15}, {8, 2})) << "a rival asks for more";
+  EXPECT_TRUE(policy.ends({24, 24, 0, 16}, {8, 2}));
+  // Sooner only without a rival.
+  EXPECT_TRUE(policy.ends({12, 12, 0, 12}, {8, 1}));
+  EXPECT_FALSE(policy.ends({12, 12, 0, 12}, {7, 1}));
+  EXPECT_FALSE(policy.ends({12, 12, 0, 16}, {12, 2}));
+}
+
+}  // namespace
+}  // namespace carnot::internal
