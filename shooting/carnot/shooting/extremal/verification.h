@@ -16,6 +16,9 @@
 
 namespace carnot::internal {
 
+// Equal actions, such as those of mirror partners, differ by less than this, relative.
+inline constexpr double kSameAction = 1e-9;
+
 // A verified extremal, its knots, and where it is at equidistant times to tell it from others.
 struct Extremal {
   Geodesic geodesic;
@@ -35,10 +38,11 @@ struct Outcome {
 // `steps` is where the search for a step begins.
 Outcome verify(const BoundaryValueProblem& problem, Knots knots, long steps, double tolerance);
 
-// The same trajectory: nowhere further apart than 1e-6 of its extent.
+// Whether both are the same trajectory: nowhere further apart than 1e-6 of its extent.
 bool same(const Extremal& a, const Extremal& b);
 
-// Both singular and of equal action: one continuous family, of which one member is enough.
+// Whether both are singular and of equal action. Then they are members of one continuous family, of
+// which one is enough.
 bool same_family(const Extremal& a, const Extremal& b);
 
 }  // namespace carnot::internal

@@ -18,7 +18,7 @@ namespace carnot::internal {
 
 class NearTarget {
  public:
-  // Nothing where the problem is easy as it is, or has no dilation.
+  // Nothing where the problem is easy as it is, or where the scene has no dilation at the start.
   static std::optional<NearTarget> of(const BoundaryValueProblem& problem);
 
   // A way to the target: by dilations, or straight, by stretching its displacement as it is, from
@@ -27,9 +27,8 @@ class NearTarget {
     double factor = 1;
     bool straight = false;
   };
-  // The one that a start uses: by dilation from where relaxation does best, straight, or from half
-  // or a quarter of the dilation. On the way back extremals meet others, and what is found by one
-  // may be lost by another.
+  // The way that a start uses: by dilation from where relaxation does best, straight, or by half of
+  // that dilation. On the way back extremals meet others, so one way may find what another loses.
   [[nodiscard]] Way way(int start) const;
   // The easy problem.
   [[nodiscard]] BoundaryValueProblem easy(const Way& way) const;

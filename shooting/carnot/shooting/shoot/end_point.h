@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "carnot/shooting/boundary_value_problem.h"
+#include "carnot/shooting/linear/round_off.h"
 #include "carnot/shooting/problem/units.h"
 
 namespace carnot::internal {
@@ -28,9 +29,6 @@ Eigen::MatrixXd kernel_of(const Units& units,
                           const Eigen::MatrixXd& tangent,
                           double tolerance = 1e-9);
 
-// Singular values of a Jacobian below this, relative, are round-off.
-inline constexpr double kRankThreshold = 1e-13;
-
 // Newton's method on q(T) = to, to the tolerance or as far as it goes; steps of least norm where
 // the Jacobian is singular, to `rank`. Returns the end point error that p0 reaches, and the tangent
 // there.
@@ -39,7 +37,7 @@ double correct(const BoundaryValueProblem& problem,
                double tolerance,
                std::vector<double>& p0,
                Eigen::MatrixXd& tangent,
-               double rank = kRankThreshold);
+               double rank = kRankRoundOff);
 
 // Where directions of p0 do not move the end point, the member of least norm, if it is the same
 // path: on an abnormal extremal any multiple of the abnormal covector may be added. Where two such
