@@ -17,12 +17,12 @@
 //      |  complete   samples, conjugate times, label     extremal/classification.h
 //   a Geodesic
 //
-// Where polishing fails, or the search wants more than the best, other ways lead in: near hits of
-// random momenta (search/sweep.h) and ways down from saddles (path/descent.h), which are tightened
-// and polished as well. Scenes without a transcription start from random momenta, which are joined
-// at knots and verified. search/search.h decides what is done next, and when it is enough. What is
-// distinct is kept, least action first. All randomness comes from `seed`; the answer does not
-// depend on the number of threads.
+// Two more ways lead in where the best extremal is no minimum, or where more than the best is
+// wanted: ways down from saddles (path/descent.h) and near hits of random momenta (search/sweep.h).
+// What they give is tightened and polished as well. Scenes without a transcription start from
+// random momenta, which are joined at knots and verified. search/search.h decides what is done
+// next, and when it is enough. What is distinct is kept, least action first. All randomness comes
+// from `seed`; the answer does not depend on the number of threads.
 #pragma once
 
 #include <string>

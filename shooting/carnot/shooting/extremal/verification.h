@@ -1,9 +1,9 @@
 // From joined knots to a verified extremal.
 //
-// Polishing: the number of steps is doubled until the flow no longer changes, then p(0) is
+// Polishing: the number of steps is doubled until the flow no longer changes. Then p(0) is
 // corrected by Newton's method on the end point. Checking: p(0) is integrated once more with twice
 // as many steps and must arrive within the tolerance. Where |dq(T)/dp(0)| makes that impossible in
-// double, the extremal is checked segment by segment at its knots instead and says so.
+// double, the extremal is checked from knot to knot instead, and says so.
 #pragma once
 
 #include <optional>

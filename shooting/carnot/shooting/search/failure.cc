@@ -63,7 +63,7 @@ double shortest_length(const Search& search) {
   return shortest;
 }
 
-// What became of discrete extremals, none of which is verified.
+// What became of the discrete extremals, where none is verified.
 std::string fate(Reason furthest) {
   switch (furthest) {
     case Reason::kNotRefined:

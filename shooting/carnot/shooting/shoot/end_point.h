@@ -11,7 +11,7 @@
 
 namespace carnot::internal {
 
-// max |a_j - b_j|; NaN when one is not a number.
+// max |a_j - b_j|. NaN where a number is NaN.
 double largest_difference(const double* a, const double* b, int count);
 
 // The columns (dq(t)/dp0; dp(t)/dp0), 2n x n, along the extremal from p0; z(t) in `z`. Nothing when
@@ -22,9 +22,9 @@ std::optional<Eigen::MatrixXd> end_point_tangent(const BoundaryValueProblem& pro
                                                  long steps,
                                                  std::vector<double>& z);
 
-// An orthonormal basis of the directions of p0 that do not move q(t), n x nullity: where the plane
-// that the columns span is within an angle `tolerance` of the vertical. Growth of the columns,
-// which makes dq(t)/dp0 look singular, does not matter.
+// An orthonormal basis, n x nullity, of the directions of p0 that do not move q(t). In these the
+// plane that the columns of the tangent span is within an angle `tolerance` of the vertical. Growth
+// of the columns, which makes dq(t)/dp0 look singular, does not matter.
 Eigen::MatrixXd kernel_of(const Units& units,
                           const Eigen::MatrixXd& tangent,
                           double tolerance = 1e-9);
@@ -39,10 +39,10 @@ double correct(const BoundaryValueProblem& problem,
                Eigen::MatrixXd& tangent,
                double rank = kRankRoundOff);
 
-// Where directions of p0 do not move the end point, the member of least norm, if it is the same
-// path: on an abnormal extremal any multiple of the abnormal covector may be added. Where two such
-// directions meet Newton's method converges slowly and its last steps are along them; so they are
-// looked for with a generous tolerance.
+// Where directions of p0 do not move the end point, p0 becomes the member of least norm, if that is
+// the same path. This is so on an abnormal extremal, where any multiple of the abnormal covector
+// may be added. Where two such directions meet, Newton's method converges slowly and its last steps
+// are along them. So they are looked for with a generous tolerance.
 void reduce(const BoundaryValueProblem& problem,
             long steps,
             double tolerance,
