@@ -9,6 +9,7 @@
 #include "carnot/numerics/parallel.h"
 #include "carnot/shooting/extremal/classification.h"
 #include "carnot/shooting/extremal/ranking.h"
+#include "carnot/shooting/linear/round_off.h"
 #include "carnot/shooting/problem/origin.h"
 #include "carnot/shooting/problem/windings.h"
 #include "carnot/shooting/search/failure.h"
@@ -46,13 +47,12 @@ Extremal constant_path(const BoundaryValueProblem& problem) {
 bool stays(const BoundaryValueProblem& problem) {
   if (problem.from != problem.to) return false;
   if (problem.dynamics.has_transcription()) return true;
-  constexpr double kMoved = 1e-12;
   std::vector<double> z = problem.from;
   z.resize(2 * problem.from.size(), 0.0);
   const StepPlan plan = StepPlan::equal(0, problem.time, kFewSteps);
   const bool completed = problem.dynamics.flow(plan, z.data()).completed();
   for (std::size_t j = 0; j < problem.from.size(); ++j) {
-    if (!(std::abs(z[j] - problem.from[j]) <= kMoved * (1 + std::abs(z[j])))) return false;
+    if (!(std::abs(z[j] - problem.from[j]) <= kRestRoundOff * (1 + std::abs(z[j])))) return false;
   }
   return completed;
 }

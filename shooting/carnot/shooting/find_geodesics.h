@@ -1,9 +1,28 @@
 // Geodesics between two configurations, without a guess.
 //
-// starts.h makes paths, relaxation.h pulls each tight on the midpoint transcription and reads off a
-// discrete costate, multiple_shooting.h polishes it at the order of the method, verification.h
-// checks the result by an independent forward integration. What is distinct is kept, least action
-// first. All randomness comes from `seed`; the answer does not depend on the number of threads.
+// What happens to one start, and where. The midpoint transcription tells a relaxed path its
+// momenta, so that shooting needs no guess of p(0):
+//
+//   a wiggled straight line                              search/starts.h
+//      |  relax      pull it tight, by least squares     path/relaxation.h
+//   a path that nearly satisfies the constraints
+//      |  tighten    Newton's method on the grid         path/discrete_newton.h
+//   a discrete extremal
+//      |  polish                                         search/polish.h
+//      |    refine   on finer grids                      path/refinement.h
+//      |    shoot    join flows from knot to knot        shoot/multiple_shooting.h
+//      |    correct  Newton's method on p(0) alone       shoot/end_point.h
+//      |    verify   integrate once more, and measure    extremal/verification.h
+//   an extremal
+//      |  complete   samples, conjugate times, label     extremal/classification.h
+//   a Geodesic
+//
+// Two more ways lead in where the best extremal is no minimum, or where more than the best is
+// wanted: ways down from saddles (path/descent.h) and near hits of random momenta (search/sweep.h).
+// What they give is tightened and polished as well. Scenes without a transcription start from
+// random momenta, which are joined at knots and verified. search/search.h decides what is done
+// next, and when it is enough. What is distinct is kept, least action first. All randomness comes
+// from `seed`; the answer does not depend on the number of threads.
 #pragma once
 
 #include <string>
@@ -20,13 +39,15 @@ enum class GeodesicStatus { kConverged, kNotConverged, kInterrupted };
 
 struct GeodesicReport {
   GeodesicStatus status = GeodesicStatus::kNotConverged;
-  Reason reason = Reason::kNone;  // why nothing was found; the first image's with mod_angles,
-  std::string message;            // in words, and what to try
+  // Why nothing was found, as a code and in words with what to try. With mod_angles they are those
+  // of the first image of the target.
+  Reason reason = Reason::kNone;
+  std::string message;
   std::vector<Geodesic> geodesics;
   int starts = 0;
   int converged_starts = 0;
-  int distinct_hit = 0;        // extremals, up to symmetry, that starts led to,
-  double missed_estimate = 0;  // and how many more there may be, by Chao's estimate
+  int distinct_hit = 0;        // extremals, up to symmetry, that starts led to
+  double missed_estimate = 0;  // how many more there may be, by Chao's estimate
   double elapsed_seconds = 0;
 };
 

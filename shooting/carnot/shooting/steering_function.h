@@ -76,8 +76,8 @@ class SteeringFunction {
                                  std::span<const double> to,
                                  double t,
                                  std::span<double> q) const;
-  // Up to `count` ways, least action first; one that failed where there is none. Not kept, and
-  // several times as dear as steer().
+  // Up to `count` ways, least action first; one that failed where there is none. They are not kept,
+  // and cost several times as much as steer().
   [[nodiscard]] std::vector<Steering> alternatives(std::span<const double> from,
                                                    std::span<const double> to,
                                                    int count = 8) const;

@@ -144,7 +144,7 @@ WarmStartReport WarmStart::Implementation::solve(const double* to, double* p0) c
     const double size = now.cwiseAbs().maxCoeff();
     if (last) report.endpoint_error = size;
     report.converged = last && size <= tolerance_;
-    // The model's Jacobian is that of the end of its step.
+    // The first step needs no update: the model's Jacobian is that at the end of its step.
     if (report.flows > 1 && !arrived) update(step, Vector(now - residual), inverse);
     if (size > error && !arrived && !report.converged) {
       step /= 2;

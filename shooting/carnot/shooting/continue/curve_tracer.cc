@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "carnot/shooting/extremal/classification.h"
+#include "carnot/shooting/linear/round_off.h"
 #include "carnot/shooting/shoot/end_point.h"
 #include "carnot/shooting/shoot/survey.h"
 
@@ -49,9 +50,8 @@ std::optional<Knots> split(const BoundaryValueProblem& problem, const Knots& kno
 }  // namespace
 
 Place CurveTracer::place_of(const VectorXd& x) const {
-  constexpr double kRoundOff = 1e-14;  // the corrector may move the first point by so much
   const double s = x[x.size() - 1];
-  return {equations_->knots(x), s < kRoundOff ? 0.0 : std::min(s, 1.0)};
+  return {equations_->knots(x), s < kArclengthRoundOff ? 0.0 : std::min(s, 1.0)};
 }
 
 bool CurveTracer::set_up(Place place, const VectorXd& along) {
@@ -87,7 +87,8 @@ bool CurveTracer::add(const CurvePoint& point) {
   const int n = place.knots.dof;
   const double size = Eigen::Map<const VectorXd>(p0.data(), n).norm();
   const double moved = largest_difference(p0.data(), extremal->geodesic.p0.data(), n);
-  largest_momentum_ = std::max(largest_momentum_, size);  // p(0) may pass zero
+  // p(0) may pass zero, where nothing is small relative to it.
+  largest_momentum_ = std::max(largest_momentum_, size);
   if (!(moved <= kSameMomentum * largest_momentum_)) return false;
   steps_ = std::max(steps_, extremal->geodesic.plan.count / 2);
   if (options_.labels) label(problem, *extremal);
@@ -129,7 +130,7 @@ VectorXd CurveTracer::predicted(double length) const {
 }
 
 std::optional<CurveTracer::Step> CurveTracer::attempt(double length) {
-  constexpr double kReach = 1.1;  // rather a longer step than a tiny one at the end
+  constexpr double kReach = 1.1;  // a slightly longer step avoids a tiny one at the end
   if (auto closed = close(length)) return closed;
   const double slope = here_.slope();
   const double bound = slope > 0 ? 1 : 0;

@@ -127,8 +127,8 @@ bool LineEquations::add_derivative_in_s(const Eigen::VectorXd& x, Eigen::MatrixX
 bool LineEquations::evaluate(const Eigen::VectorXd& x,
                              Eigen::VectorXd& residual,
                              Eigen::MatrixXd& jacobian) {
-  constexpr double kRoundOff = 1e-9;
-  if (!(x[size_] >= -kRoundOff && x[size_] <= 1 + kRoundOff)) return false;
+  constexpr double kBeyond = 1e-9;  // the ends, where the corrector ends beside them
+  if (!(x[size_] >= -kBeyond && x[size_] <= 1 + kBeyond)) return false;
   const double s = std::clamp(x[size_], 0.0, 1.0);
   const int n = reference_.dof;
   const BoundaryValueProblem problem = line_.at(s);

@@ -1,9 +1,10 @@
 // The equations of multiple shooting along a line of problems, F(u, s) = 0, with derivatives.
 //
-// x = (u, s) are the unknowns: p(0) and the phase points at the inner knots, each divided by its
-// scale, and s itself; |u|^2 is a mean over the knots, so that arclength does not depend on how
-// many there are. F_u is made of tangent flows, exact for the discrete map. F_s is exact where only
-// the target moves, else the derivative of the polynomial through five values of F near s.
+// The unknowns are x = (u, s). u holds p(0) and the phase points at the inner knots, each divided
+// by its scale. |u|^2 is a mean over the knots, so that arclength does not depend on how many there
+// are. F_u is made of tangent flows, which are exact for the discrete map. F_s is exact where only
+// the target moves. Elsewhere it is the derivative of the polynomial through five values of F near
+// s.
 #pragma once
 
 #include <Eigen/Core>

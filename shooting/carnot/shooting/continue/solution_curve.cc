@@ -45,7 +45,7 @@ std::optional<CurvePoint> SolutionCurve::correct(VectorXd x,
                                                  const VectorXd& row,
                                                  const VectorXd& along) {
   constexpr int kMaxIterations = 8;
-  constexpr double kSmall = 1e-9;  // Newton's method doubles the digits of the step after
+  constexpr double kSmall = 1e-9;  // after such a step the next one would be round-off
   constexpr double kContracts = 0.7;
   const VectorXd predicted = x;
   CurvePoint point;
@@ -107,7 +107,7 @@ VectorXd SolutionCurve::locate(const CurvePoint& a, const CurvePoint& b, const T
     const bool same = (at_middle > 0) == (at_low > 0);
     (same ? low : high) = *middle;
     (same ? at_low : at_high) = at_middle;
-    // The end that stays counts for less, so that it moves in the end.
+    // The value at an end that stays is halved, so that the end moves before long.
     if (side == (same ? 1 : -1)) (same ? at_high : at_low) *= 0.5;
     side = same ? 1 : -1;
   }
@@ -120,8 +120,9 @@ VectorXd SolutionCurve::locate(const CurvePoint& a, const CurvePoint& b, const T
 std::optional<VectorXd> SolutionCurve::locate_touch(const CurvePoint& a, const CurvePoint& b) {
   constexpr int kMaxIterations = 40;
   constexpr double kGolden = 0.3819660112501051;
-  constexpr double kClose = 1e-7;     // of the chord
-  constexpr double kVanishes = 1e-6;  // of the determinant: Newton's method ends beside the point
+  constexpr double kClose = 1e-7;  // of the chord
+  // A determinant that falls by this factor touches zero: Newton's method ends beside the point.
+  constexpr double kVanishes = 1e-6;
   const VectorXd chord = b.x - a.x;
   double low = 0;
   double least = kGolden;

@@ -48,9 +48,10 @@ class SolutionCurve {
   using Test = std::function<double(const CurvePoint&)>;
   [[nodiscard]] Eigen::VectorXd locate(const CurvePoint& a, const CurvePoint& b, const Test& test);
 
-  // Between a and b, of one orientation, with a smaller determinant in between: the point where it
-  // touches zero, as where F' lacks two in rank; nothing where it does not. By golden section of
-  // its size, whose square root falls and rises linearly there.
+  // a and b have one orientation, and the determinant is smaller in between. Returns the point
+  // where it touches zero, as it does where F' lacks two in rank, or nothing where it does not
+  // touch zero. The least size is found by golden section; its square root falls and rises linearly
+  // there.
   [[nodiscard]] std::optional<Eigen::VectorXd> locate_touch(const CurvePoint& a,
                                                             const CurvePoint& b);
 

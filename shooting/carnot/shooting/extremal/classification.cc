@@ -11,7 +11,7 @@
 namespace carnot::internal {
 namespace {
 
-// How well the phases at T are known: p0 is as good as the end point error relative to the
+// How well the phases at T are known. p0 is as good as the end point error is relative to the
 // distance.
 double doubt_of(const BoundaryValueProblem& problem, const Geodesic& geodesic) {
   constexpr double kLeast = 1e-8;
@@ -22,7 +22,8 @@ double doubt_of(const BoundaryValueProblem& problem, const Geodesic& geodesic) {
   return distance > 0 ? std::max(kLeast, kMargin * geodesic.endpoint_error / distance) : kLeast;
 }
 
-// The largest |value(q)| along the path: of samples, and of the parabola through the best three.
+// The largest |value(q)| along the path: the top of the parabola through the largest sample and its
+// neighbours.
 void add_extremes(const BoundaryValueProblem& problem,
                   const Knots& knots,
                   long steps,
@@ -43,9 +44,9 @@ void add_extremes(const BoundaryValueProblem& problem,
   }
 }
 
-// Whether T is conjugate because the extremal is one of a continuum: a step along each direction
-// that does not move the end leads, corrected, to another extremal. Where it is an isolated fold
-// the correction leads back. Nothing where only some directions do.
+// Whether T is conjugate because the extremal is one of a continuum. Then a step along each
+// direction that does not move the end leads, once corrected, to another extremal; at an isolated
+// fold the correction leads back. Nothing where some directions do the one and some the other.
 std::optional<int> family_dimension(const BoundaryValueProblem& problem,
                                     const Geodesic& geodesic,
                                     int conjugate,
@@ -78,8 +79,8 @@ std::optional<int> family_dimension(const BoundaryValueProblem& problem,
   return moved == 0 ? std::optional<int>(0) : std::nullopt;
 }
 
-// Whether the path passes a singularity of the coordinates, as some do that move only one of them.
-// The tangent flow has a pole there, which numbers beyond it do not show.
+// Whether the path passes a singularity of the coordinates. Some paths that move only one
+// coordinate do. The tangent flow has a pole there, and the numbers beyond the pole do not show it.
 bool passes_singularity(const BoundaryValueProblem& problem, const Extremal& extremal) {
   if (problem.dynamics.calls.chart == nullptr) return false;
   const long steps = extremal.geodesic.plan.count;

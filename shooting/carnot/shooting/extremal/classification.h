@@ -9,11 +9,12 @@ namespace carnot::internal {
 // family dimension, as far as they can be known.
 void complete(const BoundaryValueProblem& problem, long samples, Extremal& extremal);
 
-// The same without samples and times: these are counted only, which is faster where there are many.
+// The same without samples. Conjugate times are counted and not located, which is faster where
+// there are many.
 void label(const BoundaryValueProblem& problem, Extremal& extremal);
 
-// The conjugate times of the extremal, computed once. Unknown with holonomic constraints that need
-// forces, where momenta along the rows of Dh move nothing.
+// The conjugate times of the extremal, computed once. They are unknown where holonomic constraints
+// need forces, since momenta along the rows of Dh then move nothing.
 const ConjugateTimes& conjugate_times_of(const BoundaryValueProblem& problem, Extremal& extremal);
 
 }  // namespace carnot::internal

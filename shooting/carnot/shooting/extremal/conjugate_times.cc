@@ -8,6 +8,7 @@
 
 #include "carnot/shooting/linear/dense.h"
 #include "carnot/shooting/linear/lagrangian_plane.h"
+#include "carnot/shooting/linear/round_off.h"
 #include "carnot/shooting/problem/units.h"
 
 namespace carnot::internal {
@@ -38,7 +39,7 @@ class Planes {
         inverse_(lu_inverse(s)),
         corank_(corank),
         precision_(precision),
-        doubt_(kRoundOff * s_.norm() * inverse_.norm()) {}
+        doubt_(kPlaneRoundOff * s_.norm() * inverse_.norm()) {}
 
   // The frame at time t, in as many steps of the method as det W needs to be followed. False when
   // a step fails or W turns too fast.
@@ -68,7 +69,7 @@ class Planes {
     }
     return number;
   }
-  // A phase so near to zero that round-off may have put it on the wrong side.
+  // Whether a phase is so near to zero that round-off may have put it on the wrong side.
   [[nodiscard]] bool ambiguous(const Frame& frame) const { return near_zero(frame, doubt_) > 0; }
   [[nodiscard]] double doubt() const { return doubt_; }
 
@@ -108,7 +109,6 @@ class Planes {
   }
 
   static constexpr double kLargestTurn = 0.8;  // of det W in one step; 2 pi more would go unseen
-  static constexpr double kRoundOff = 1e-14;   // of a plane, before S magnifies it
 
   const Dynamics& dynamics_;
   const Units& units_;
@@ -127,9 +127,9 @@ Frame vertical(const Knots& knots) {
   return frame;
 }
 
-// A typical graph from `begin` T to `end` T: the middle one by regularity, of those with the
-// smallest kernel. Near a time where X or P is singular the balance would make a phase turn too
-// fast to be seen.
+// A typical graph from `begin` T to `end` T. Of the graphs with the smallest kernel it is the
+// middle one by regularity: near a time where X or P is singular, the balance would make a phase
+// turn too fast to be seen.
 std::optional<Graph> typical_graph(double begin,
                                    double end,
                                    const BoundaryValueProblem& problem,
@@ -158,7 +158,7 @@ std::optional<Graph> typical_graph(double begin,
     }
   }
   if (graphs.empty()) return std::nullopt;
-  // A conjugate time by chance shows a kernel only there.
+  // A conjugate time that is met by chance shows a kernel at this time only.
   std::sort(graphs.begin(), graphs.end(), [](const Graph& one, const Graph& other) {
     return std::pair(one.kernel, one.regularity) < std::pair(other.kernel, other.regularity);
   });
@@ -168,8 +168,9 @@ std::optional<Graph> typical_graph(double begin,
   return graphs[typical / 2];
 }
 
-// Before T/2, where symmetric extremals have nothing special; but a path may leave an abnormal one
-// later than that, such as exponentially.
+// The balance is taken before T/2, a time that is special to symmetric extremals. A path may leave
+// an abnormal one later than that, exponentially for example. So where there is a kernel, a late
+// time is tried, too.
 std::optional<Graph> balance_of(double fraction,
                                 const BoundaryValueProblem& problem,
                                 const Units& units,
@@ -182,9 +183,9 @@ std::optional<Graph> balance_of(double fraction,
   return late && late->kernel < graph->kernel ? late : graph;
 }
 
-// Whether a kernel that shows itself along the path can be told from small numbers. On a path of
-// extent d directions that take s brackets move by d^(2s - 2) only; five brackets and d = 0.05 are
-// still above round-off.
+// Whether a kernel along the path can be told from small numbers. On a path of extent d, directions
+// that take s brackets move by d^(2s - 2) only. Five brackets and d = 0.05 are still above
+// round-off.
 bool tells_kernels(const Knots& knots) {
   constexpr double kLeastExtent = 0.05;
   double extent = 0;

@@ -8,10 +8,10 @@
 //   N(t) = (Phi(t) - sum_j theta_j(t)) / (2 pi)
 //
 // counts the conjugate times in (0, t), even multiplicities too, where the sign of det X does not.
-// On an abnormal extremal as many phases as its corank stay at 0 and are left out. The plane is
-// carried from step to step by the tangent flow and made orthonormal again each time, so growth of
-// the tangents costs no digits. Source: Arnold, Mathematical Methods of Classical Mechanics,
-// appendix 11 (Maslov index).
+// On an abnormal extremal as many phases as its corank stay at 0; these are left out. The tangent
+// flow carries the plane from step to step, and its basis is made orthonormal again each time, so
+// that growth of the tangents costs no digits. Source: Arnold, Mathematical Methods of Classical
+// Mechanics, appendix 11 (Maslov index).
 #pragma once
 
 #include <optional>
@@ -30,8 +30,9 @@ struct ConjugateTimes {
 };
 
 struct ConjugateTimesOptions {
-  double doubt = 1e-8;  // a phase nearer to zero at T counts as zero: T is conjugate, as well as
-                        // the extremal is known
+  // A phase that is nearer to zero at T counts as zero. Then T is conjugate, as far as it can be
+  // told with an extremal that is known only so well.
+  double doubt = 1e-8;
   double precision = 1e-13;  // relative, of the times; with 1 they are counted, not located
 };
 

@@ -7,9 +7,6 @@
 
 namespace carnot::internal {
 
-// Equal actions, as of mirror partners, differ by less than this, relative.
-inline constexpr double kSameAction = 1e-9;
-
 // Least action first; equal ones in the order of p0, not of round-off, and those that need knots
 // last.
 void rank(std::vector<Extremal>& list);

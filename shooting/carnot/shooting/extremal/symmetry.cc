@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "carnot/shooting/linear/round_off.h"
+
 namespace carnot::internal {
 
 void turn_plane(const Symmetries& of, double angle, double* x) {
@@ -26,7 +28,6 @@ std::vector<double> linear(const Symmetries& of, const ProblemSymmetry& s, const
 // Completes mirror and reversal to a map of `from` to the image of `from`; false when `to` is then
 // not mapped to the image of `to`.
 bool complete_map(const BoundaryValueProblem& problem, ProblemSymmetry& s) {
-  constexpr double kRoundOff = 1e-12;
   const Symmetries& of = problem.dynamics.info.symmetries;
   const std::vector<double>& image_from = s.reverses ? problem.to : problem.from;
   const std::vector<double>& image_to = s.reverses ? problem.from : problem.to;
@@ -44,8 +45,8 @@ bool complete_map(const BoundaryValueProblem& problem, ProblemSymmetry& s) {
   const std::vector<double> second = linear(of, s, problem.to.data());
   for (std::size_t j = 0; j < first.size(); ++j) {
     const double size = 1 + std::abs(image_from[j]) + std::abs(image_to[j]);
-    if (std::abs(first[j] + s.shift[j] - image_from[j]) > kRoundOff * size) return false;
-    if (std::abs(second[j] + s.shift[j] - image_to[j]) > kRoundOff * size) return false;
+    if (std::abs(first[j] + s.shift[j] - image_from[j]) > kSymmetryRoundOff * size) return false;
+    if (std::abs(second[j] + s.shift[j] - image_to[j]) > kSymmetryRoundOff * size) return false;
   }
   return true;
 }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "carnot/shooting/linear/round_off.h"
 #include "carnot/shooting/problem/manifold.h"
 #include "carnot/shooting/shoot/end_point.h"
 #include "carnot/shooting/shoot/multiple_shooting.h"
@@ -22,7 +23,7 @@ double round_off(const Knots& knots, double growth) {
   constexpr double kRoundings = 10;  // a step's share that does not average out
   double largest = 0;
   for (const double x : knots.z) largest = std::max(largest, std::abs(x));
-  return kRoundings * std::numeric_limits<double>::epsilon() * largest * std::max(1.0, growth);
+  return kRoundings * kEpsilon * largest * std::max(1.0, growth);
 }
 
 // Whether the flow from p0 magnifies round-off so much that it cannot tell where the path ends.
@@ -61,7 +62,6 @@ long enough_steps(const BoundaryValueProblem& problem,
                   const Knots& knots,
                   long steps,
                   double tolerance) {
-  constexpr double kRoundOff = 1e-13;
   const int size = 2 * knots.dof;
   for (; steps < kMaxSteps; steps *= 2) {
     bool settled = true;
@@ -75,7 +75,7 @@ long enough_steps(const BoundaryValueProblem& problem,
         return problem.dynamics.flow(plan, z.data()).completed();
       };
       settled = run(steps, coarse) && run(2 * steps, fine);
-      const double allowed = std::max(kRoundOff * scale, 1e-3 * tolerance);
+      const double allowed = std::max(kFlowRoundOff * scale, 1e-3 * tolerance);
       settled = settled && largest_difference(coarse.data(), fine.data(), size) <= allowed;
     }
     if (settled) break;
@@ -200,7 +200,6 @@ bool same(const Extremal& a, const Extremal& b) {
 }
 
 bool same_family(const Extremal& a, const Extremal& b) {
-  constexpr double kSameAction = 1e-9;
   const double apart = std::abs(a.geodesic.action - b.geodesic.action);
   return a.singular && b.singular && apart <= kSameAction * std::abs(a.geodesic.action);
 }

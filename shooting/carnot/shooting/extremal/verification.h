@@ -1,9 +1,9 @@
 // From joined knots to a verified extremal.
 //
-// Polishing: the number of steps is doubled until the flow no longer changes, then p(0) is
+// Polishing: the number of steps is doubled until the flow no longer changes. Then p(0) is
 // corrected by Newton's method on the end point. Checking: p(0) is integrated once more with twice
 // as many steps and must arrive within the tolerance. Where |dq(T)/dp(0)| makes that impossible in
-// double, the extremal is checked segment by segment at its knots instead and says so.
+// double, the extremal is checked from knot to knot instead, and says so.
 #pragma once
 
 #include <optional>
@@ -15,6 +15,9 @@
 #include "carnot/shooting/shoot/knots.h"
 
 namespace carnot::internal {
+
+// Equal actions, such as those of mirror partners, differ by less than this, relative.
+inline constexpr double kSameAction = 1e-9;
 
 // A verified extremal, its knots, and where it is at equidistant times to tell it from others.
 struct Extremal {
@@ -35,10 +38,11 @@ struct Outcome {
 // `steps` is where the search for a step begins.
 Outcome verify(const BoundaryValueProblem& problem, Knots knots, long steps, double tolerance);
 
-// The same trajectory: nowhere further apart than 1e-6 of its extent.
+// Whether both are the same trajectory: nowhere further apart than 1e-6 of its extent.
 bool same(const Extremal& a, const Extremal& b);
 
-// Both singular and of equal action: one continuous family, of which one member is enough.
+// Whether both are singular and of equal action. Then they are members of one continuous family, of
+// which one is enough.
 bool same_family(const Extremal& a, const Extremal& b);
 
 }  // namespace carnot::internal

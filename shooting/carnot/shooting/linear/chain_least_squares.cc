@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "carnot/shooting/linear/banded_cholesky.h"
+#include "carnot/shooting/linear/norm.h"
 
 namespace carnot::internal {
 namespace {
@@ -78,12 +79,6 @@ class Chain {
   std::vector<double> r_;
   std::vector<double> jacobian_;
 };
-
-double norm(const double* x, std::size_t count) {
-  double sum = 0;
-  for (std::size_t j = 0; j < count; ++j) sum += x[j] * x[j];
-  return std::sqrt(sum);
-}
 
 double largest(const std::vector<double>& x) {
   double most = 0;
@@ -169,9 +164,9 @@ int minimise_chain(const ChainResiduals& residuals_of,
     }
     for (int j = 0; j < chain.size(); ++j) trial[n + j] = x[n + j] + step[j];
     const double gain = cost - chain.cost(trial);
-    const double size = norm(&x[n], step.size()) + options.step_tolerance;
+    const double size = norm({&x[n], step.size()}) + options.step_tolerance;
     done = std::abs(gain) <= options.function_tolerance * cost ||
-           norm(step.data(), step.size()) <= options.step_tolerance * size;
+           norm(step) <= options.step_tolerance * size;
     if (!(gain > kLeastRatio * predicted)) {
       region.reject();
       continue;

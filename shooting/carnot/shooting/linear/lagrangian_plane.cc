@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "carnot/shooting/linear/dense.h"
+#include "carnot/shooting/linear/round_off.h"
 
 namespace carnot::internal {
 
@@ -45,7 +46,6 @@ Phases phases_of(const MatrixXd& plane) {
 }
 
 Graph graph_of(const MatrixXd& plane) {
-  constexpr double kZero = 1e-13;  // relative; smaller ones are round-off
   const auto n = plane.cols();
   const MatrixXd ratio = product(plane.topRows(n), lu_inverse(plane.bottomRows(n)));
   const SymmetricEigen eigen = symmetric_eigen(0.5 * (ratio + ratio.transpose()));
@@ -53,7 +53,7 @@ Graph graph_of(const MatrixXd& plane) {
   const double largest = root.maxCoeff();
   Graph graph;
   for (double& value : root) {
-    if (value <= kZero * largest) {
+    if (value <= kRankRoundOff * largest) {
       ++graph.kernel;
       value = largest;
     }

@@ -33,7 +33,8 @@ class Descent {
 
   // A direction of negative curvature, of the length of the path; nothing where there is none.
   [[nodiscard]] std::optional<std::vector<double>> downward(const Path& saddle) {
-    constexpr double kShifts[] = {0.3, 0.03};  // curvatures are multiples of B: 1 for fast wiggles
+    // Curvatures are relative to B, which makes them 1 for fast wiggles.
+    constexpr double kShifts[] = {0.3, 0.03};
     constexpr int kIterations = 12;
     std::mt19937_64 random(1);
     std::normal_distribution<double> normal;
@@ -131,7 +132,8 @@ class Descent {
       if (equations_.is_multiplier(j) == multipliers) x[j] = 0;
     }
   }
-  // Those by which the constraints balance the slope of the action, as far as they can, in B.
+  // Sets the multipliers by which the constraints balance the slope of the action, as far as they
+  // can, in the metric B.
   void set_multipliers(Path& path) {
     std::fill(path.lambda.begin(), path.lambda.end(), 0.0);
     std::vector<double> direction;
@@ -164,7 +166,7 @@ class Descent {
   [[nodiscard]] bool restore(Path& path) {
     constexpr int kMaxIterations = 8;
     constexpr double kRestored = 1e-8;
-    Path bare = path;  // of multipliers, which the constraints of control problems hold too
+    Path bare = path;  // without multipliers, which the constraints of control problems contain
     std::fill(bare.lambda.begin(), bare.lambda.end(), 0.0);
     std::vector<double> direction;
     for (int i = 0; i < kMaxIterations; ++i) {

@@ -4,9 +4,10 @@
 //
 //   D2 F_d(q_{i-1}, q_i, lambda_{i-1}) + D1 F_d(q_i, q_{i+1}, lambda_i) = 0,   D3 F_d = 0,
 //
-// which is the midpoint rule with momenta that match at every node: the gradient of sum F_d, the
-// action less lambda times the constraints. Unknowns and equations are ordered lambda_0, q_1,
-// lambda_1, q_2, ..., lambda_{K-1}, and the matrix, of exact second derivatives, is banded.
+// This is the midpoint rule with momenta that match at every node. It is also the gradient of
+// sum F_d, the action less lambda times the constraints. Unknowns and equations are ordered
+// lambda_0, q_1, lambda_1, q_2, ..., lambda_{K-1}. The matrix holds exact second derivatives and is
+// banded.
 #pragma once
 
 #include <vector>
@@ -28,8 +29,8 @@ class DiscreteEquations {
   [[nodiscard]] bool is_multiplier(int unknown) const { return unknown % (n_ + k_) < k_; }
 
   // What stands for the second derivatives of sum F_d by the nodes: a combination of themselves and
-  // of B, those of the kinetic energy alone without the curvature of its terms, sum h J'J with
-  // J = dr/dq. B is positive definite where the constraints leave the nodes free.
+  // of B. B = sum h J'J with J = dr/dq is made of those of the kinetic energy, without the
+  // curvature of its terms. It is positive definite where the constraints leave the nodes free.
   struct Weights {
     double hessian = 1;
     double metric = 0;
@@ -39,7 +40,7 @@ class DiscreteEquations {
                   std::vector<double>& residual,
                   BandedLu* matrix,
                   const Weights& weights = {1, 0});
-  // B x, with zeros for the multipliers. Not a number where the terms cannot be evaluated.
+  // B x, with zeros for the multipliers. The result is NaN where the terms cannot be evaluated.
   void metric_product(const Path& path, const std::vector<double>& x, std::vector<double>& product);
   // path - step * direction.
   void move(const Path& from, const std::vector<double>& direction, double step, Path& to) const;

@@ -3,24 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "carnot/shooting/linear/norm.h"
 #include "carnot/shooting/path/discrete_equations.h"
 
 namespace carnot::internal {
-namespace {
-
-double norm(const std::vector<double>& x) {
-  double sum = 0;
-  for (const double value : x) sum += value * value;
-  return std::sqrt(sum);
-}
-
-}  // namespace
 
 DiscreteNewton tighten(const BoundaryValueProblem& problem,
                        const DiscreteNewtonOptions& options,
                        Path& path) {
   constexpr double kShortestStep = 1.0 / 64;
-  // Where no step gains: round-off of coordinates far from zero, magnified near singular frames.
+  // A residual that no step makes smaller is round-off up to here: that of coordinates far from
+  // zero, magnified near singular frames.
   constexpr double kRoundedOff = 1e-6;
   const double h = problem.time / path.intervals;
   DiscreteEquations equations(problem.dynamics, h, path.intervals);

@@ -97,7 +97,9 @@ Refinement refine(const BoundaryValueProblem& problem,
                   const RefinementOptions& options,
                   const Path& path) {
   Refinement result;
-  constexpr double kSlowest = 0.8;  // 1/4 where the grid resolves the path; else a chase
+  // Each doubling changes the momenta by a quarter of the last change where the grid resolves the
+  // path. Where the changes hardly fall, finer grids follow a path that is not there.
+  constexpr double kSlowest = 0.8;
   std::optional<double> last_change;
   Path coarse = path;
   while (2 * coarse.intervals <= options.max_intervals) {

@@ -1,11 +1,11 @@
 // From a discrete extremal on a coarse grid to knots that shooting can start from.
 //
-// The midpoint transcription has an error h^2 (e_2(t) + h^2 e_4(t) + ...), so the number of
-// intervals is doubled, each time with Newton's method (discrete_newton.h), until the momenta
-// change by little; of the last two grids the combination (4 fine - coarse)/3 has an error of order
-// h^4 (Richardson). Boundary layers, as of a short steering axle on a long way, need many
-// intervals; most problems do not. A coarse extremal that has no fine counterpart is an artefact of
-// the grid and ends here.
+// The midpoint transcription has an error h^2 (e_2(t) + h^2 e_4(t) + ...). So the number of
+// intervals is doubled until the momenta change by little, each time with Newton's method
+// (discrete_newton.h). Of the last two grids the combination (4 fine - coarse)/3 has an error of
+// order h^4 (Richardson). Boundary layers, such as that of a short steering axle on a long way,
+// need many intervals; most problems do not. A coarse extremal that has no fine counterpart is an
+// artefact of the grid and ends here.
 #pragma once
 
 #include "carnot/shooting/boundary_value_problem.h"

@@ -1,12 +1,12 @@
 // Path relaxation: pull a path tight, read off a costate.
 //
-// Minimises the action of the midpoint transcription sum_i h L(qm_i, v_i) subject to
-// G(qm_i) v_i = 0 by an augmented Lagrangian: with multipliers lambda_i and weight rho,
+// The action of the midpoint transcription, sum_i h L(qm_i, v_i), is minimised subject to
+// G(qm_i) v_i = 0 by an augmented Lagrangian. With multipliers lambda_i and a weight rho this is
 //
-//   sum_i h [ L - lambda.G v + rho |G v|^2 / 2 ],      lambda <- lambda - rho G v,
+//   sum_i h [ L - lambda.G v + rho |G v|^2 / 2 ],      lambda <- lambda - rho G v.
 //
-// each inner problem a sum of squares on a chain of nodes (chain_least_squares.h).
-// At the solution lambda are the multipliers and -D1 F_d the momentum of the midpoint rule itself
+// Each inner problem is a sum of squares on a chain of nodes (chain_least_squares.h). At the
+// solution lambda are the multipliers, and -D1 F_d is the momentum, of the midpoint rule itself
 // (lib: midpoint_transcription.h), so that shooting starts from a discrete extremal. A potential
 // enters as sqrt(2 (c - V)) with c above V along the path.
 #pragma once
@@ -32,7 +32,7 @@ struct Relaxation {
 };
 
 // Relaxes `path` in place and fills its momenta. The ends stay fixed. Starts from the multipliers
-// of the path; none are zeros.
+// of the path, or from zeros where it has none.
 Relaxation relax(const BoundaryValueProblem& problem, const RelaxationOptions& options, Path& path);
 
 }  // namespace carnot::internal

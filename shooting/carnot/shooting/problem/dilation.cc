@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "carnot/shooting/linear/dense.h"
 #include "carnot/shooting/problem/scales.h"
@@ -23,7 +24,7 @@ class Fields {
   [[nodiscard]] const MatrixXd& metric() const { return metric_; }
   [[nodiscard]] double length(const VectorXd& v) const { return std::sqrt(v.dot(metric_ * v)); }
 
-  // Fields: the velocity of the momentum e_i, or the bracket of such a one with a field.
+  // A field is the velocity of the momentum e_i, or the bracket of such a velocity with a field.
   int add_velocity(int i) {
     fields_.push_back({i, kNone});
     return static_cast<int>(fields_.size()) - 1;
@@ -49,7 +50,7 @@ class Fields {
     int second;
   };
 
-  // M + G'G: the metric M itself may be singular, on what the constraints forbid. Not a number
+  // M + G'G. The metric M itself may be singular on what the constraints forbid. The result is NaN
   // where they cannot be evaluated.
   [[nodiscard]] MatrixXd metric_at(const double* q) const {
     const int n = dynamics_.dof;
@@ -78,63 +79,71 @@ class Fields {
   std::vector<Field> fields_;
 };
 
-}  // namespace
+// A direction that may be new, and the field that it is the value of.
+struct Direction {
+  int field;
+  VectorXd value;
+};
 
-std::optional<Dilation> Dilation::at_start(const BoundaryValueProblem& problem) {
-  constexpr double kStep = 1e-2;         // of differences, in units of S
-  constexpr double kIndependent = 1e-3;  // part of a direction that is new, in units of S^-w
-  constexpr int kMostBrackets = 4;
-  const int n = problem.dynamics.dof;
-  Dilation dilation;
-  dilation.from_ = problem.from;
-  dilation.unit_ = start_scales(problem).radian;
-  dilation.basis_.resize(n, 0);
-  Fields fields(problem.dynamics, problem.from.data(), kStep * dilation.unit_);
-  const MatrixXd& metric = fields.metric();
-  const Eigen::Map<const VectorXd> from(problem.from.data(), n);
+std::vector<int> fields_of(const std::vector<Direction>& directions) {
+  std::vector<int> fields;
+  for (const Direction& direction : directions) fields.push_back(direction.field);
+  return fields;
+}
 
-  // A direction that may be new, and the field that it is the value of.
-  struct Direction {
-    int field;
-    VectorXd value;
-  };
-  const auto fields_of = [](const std::vector<Direction>& list) {
-    std::vector<int> fields;
-    for (const Direction& direction : list) fields.push_back(direction.field);
-    return fields;
-  };
-  // Adds those of `directions` that are new to the basis, largest first, and returns their fields.
-  const auto extend = [&](std::vector<Direction>& directions, int weight) {
+// A basis adapted to the flag, orthonormal in the metric, as far as it is known.
+struct Flag {
+  MatrixXd basis;
+  std::vector<int> weights;
+
+  [[nodiscard]] bool complete() const { return basis.cols() == basis.rows(); }
+
+  // Adds those of `directions` that are new, largest first, and returns their fields.
+  std::vector<int> extend(const Fields& fields, std::vector<Direction>& directions, int weight) {
+    constexpr double kIndependent = 1e-3;  // part of a direction that is new, in units of S^-w
     std::vector<int> chosen;
     for (;;) {
       int best = -1;
       double largest = kIndependent;
       for (std::size_t i = 0; i < directions.size(); ++i) {
         VectorXd& rest = directions[i].value;
-        rest -= dilation.basis_ * (dilation.basis_.transpose() * (metric * rest));
+        rest -= basis * (basis.transpose() * (fields.metric() * rest));
         if (!(fields.length(rest) > largest)) continue;
         largest = fields.length(rest);
         best = static_cast<int>(i);
       }
       if (best < 0) return chosen;
-      dilation.basis_.conservativeResize(n, dilation.basis_.cols() + 1);
-      dilation.basis_.rightCols(1) = directions[best].value / largest;
-      dilation.weights_.push_back(weight);
+      basis.conservativeResize(basis.rows(), basis.cols() + 1);
+      basis.rightCols(1) = directions[best].value / largest;
+      weights.push_back(weight);
       chosen.push_back(directions[best].field);
     }
-  };
+  }
+};
 
+}  // namespace
+
+std::optional<Dilation> Dilation::at_start(const BoundaryValueProblem& problem) {
+  constexpr double kStep = 1e-2;  // of differences, in units of S
+  constexpr int kMostBrackets = 4;
+  const int n = problem.dynamics.dof;
+  Dilation dilation;
+  dilation.from_ = problem.from;
+  dilation.unit_ = start_scales(problem).radian;
+  Fields fields(problem.dynamics, problem.from.data(), kStep * dilation.unit_);
+  const Eigen::Map<const VectorXd> from(problem.from.data(), n);
   std::vector<Direction> directions;
   for (int i = 0; i < n; ++i) {
     const int field = fields.add_velocity(i);
     directions.push_back({field, fields.value(field, from)});
   }
-  const std::vector<int> frame = extend(directions, 1);
-  // All with as many brackets: one that vanishes here, as where the frame loses rank, has brackets
-  // that do not.
+  Flag flag{MatrixXd(n, 0), {}};
+  const std::vector<int> frame = flag.extend(fields, directions, 1);
+  // The next brackets are those of all fields of this weight, new or not. A field may vanish here,
+  // as it does where the frame loses rank, and still have brackets that do not vanish.
   std::vector<int> latest = fields_of(directions);
   double scale = 1;
-  for (int weight = 2; weight <= kMostBrackets && dilation.dof() < n; ++weight) {
+  for (int weight = 2; weight <= kMostBrackets && !flag.complete(); ++weight) {
     scale *= dilation.unit_;
     directions.clear();
     for (const int x : frame) {
@@ -144,11 +153,13 @@ std::optional<Dilation> Dilation::at_start(const BoundaryValueProblem& problem) 
         directions.push_back({bracket, scale * fields.value(bracket, from)});
       }
     }
-    extend(directions, weight);
+    flag.extend(fields, directions, weight);
     latest = fields_of(directions);
   }
-  if (dilation.dof() < n || !dilation.basis_.allFinite()) return std::nullopt;
-  dilation.inverse_ = product(dilation.basis_.transpose(), metric);
+  if (!flag.complete() || !flag.basis.allFinite()) return std::nullopt;
+  dilation.inverse_ = product(flag.basis.transpose(), fields.metric());
+  dilation.basis_ = std::move(flag.basis);
+  dilation.weights_ = std::move(flag.weights);
   return dilation;
 }
 

@@ -17,9 +17,9 @@ namespace carnot::internal {
 
 class Dilation {
  public:
-  // Of the scene around problem.from. Brackets are differences of differences, good to about 1e-3;
-  // nothing where more than four of them leave a direction out, or where the frame is singular.
-  // Cost: some hundred evaluations of the constraints.
+  // Of the scene around problem.from. Brackets are differences of differences, good to about 1e-3.
+  // Nothing where brackets of up to four fields leave a direction out, or where the frame is
+  // singular. Cost: some hundred evaluations of the constraints.
   static std::optional<Dilation> at_start(const BoundaryValueProblem& problem);
 
   [[nodiscard]] int dof() const { return static_cast<int>(weights_.size()); }

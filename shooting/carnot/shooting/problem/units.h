@@ -1,9 +1,9 @@
 // Units in which a short extremal is not short.
 //
-// Along an extremal of length d a direction of weight w (dilation.h) moves by d^w and has momenta
-// of d^(2 - w): the blocks of the tangent flow are graded, and no threshold tells a small singular
-// value from round-off. The symplectic change q = from + E q~, p = c E^-T p~, with E the basis
-// adapted to the flag times the d^w and c = d^2, makes all of them of size one.
+// Along an extremal of length d, a direction of weight w (dilation.h) moves by d^w and has momenta
+// of d^(2 - w). So the blocks of the tangent flow are graded, and no threshold tells a small
+// singular value from round-off. The symplectic change q = from + E q~, p = c E^-T p~ makes all of
+// them of size one. Here E is the basis adapted to the flag times the d^w, and c = d^2 / T.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,8 +14,8 @@ namespace carnot::internal {
 
 class Units {
  public:
-  // For the extremal of `problem` from p0. Those of the coordinates where it is not short, or where
-  // there is no dilation.
+  // For the extremal of `problem` from p0. Where it is not short, or where there is no dilation,
+  // the units are those of the coordinates.
   Units(const BoundaryValueProblem& problem, const double* p0);
 
   [[nodiscard]] bool scaled() const { return scaled_; }

@@ -26,7 +26,7 @@ double DiscreteList::action_of(const Path& path) const {
 }
 
 std::size_t DiscreteList::find(const Path& path, const ExtremalList& extremals) const {
-  constexpr double kSameAction = 1e-6;  // relative: as well as Newton's method on the grid does
+  constexpr double kSame = 1e-6;  // relative
   std::vector<Path> images{path};
   for (const ProblemSymmetry& symmetry : symmetries_) {
     images.push_back(partner(problem_.dynamics.info, symmetry, path));
@@ -35,7 +35,7 @@ std::size_t DiscreteList::find(const Path& path, const ExtremalList& extremals) 
   for (std::size_t i = 0; i < list_.size(); ++i) {
     const DiscreteExtremal& known = list_[i];
     if (known.path.intervals != path.intervals) continue;
-    if (std::abs(action - known.action) > kSameAction * std::abs(action)) continue;
+    if (std::abs(action - known.action) > kSame * std::abs(action)) continue;
     if (known.fate == Fate::kExtremal && extremals[known.extremal].singular) return i;
     for (const Path& image : images) {
       if (same_nodes(known.path, image)) return i;

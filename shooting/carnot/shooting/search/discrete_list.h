@@ -1,7 +1,6 @@
 // The discrete extremals that a search has seen, and what became of each.
 //
-// Polishing costs some hundred times as much as tightening, so a discrete extremal that is known is
-// not polished again; what it became counts as hit instead.
+// A discrete extremal that is known is not polished again. What it became counts as hit instead.
 #pragma once
 
 #include <vector>

@@ -1,7 +1,8 @@
 // The distinct extremals of a search, with how often each was hit.
 //
-// Mirror partners are extremals of their own but are hit together: a start that leads to one leads,
-// mirrored, to the other. So hits are counted for the first of the partners, which stands for all.
+// Mirror partners are extremals of their own, but they are hit together: a start that leads to one
+// would lead, mirrored, to the other. So hits are counted for the first of the partners, which
+// stands for all of them.
 #pragma once
 
 #include <functional>

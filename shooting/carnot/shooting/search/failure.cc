@@ -7,6 +7,7 @@
 
 #include "carnot/shooting/extremal/conjugate_times.h"
 #include "carnot/shooting/linear/dense.h"
+#include "carnot/shooting/linear/round_off.h"
 #include "carnot/shooting/shoot/end_point.h"
 
 namespace carnot::internal {
@@ -26,7 +27,7 @@ std::string regularity(const BoundaryValueProblem& problem) {
 // What the flow from p0 says.
 struct EndPoint {
   std::string text;
-  bool beyond_double = false;  // the inverse of dq(T)/dp0 leaves no digit
+  bool beyond_double = false;  // dq(T)/dp0 is so ill-conditioned that p0 has no digit
 };
 
 EndPoint end_point(const BoundaryValueProblem& problem, const std::vector<double>& p0) {
@@ -50,10 +51,10 @@ EndPoint end_point(const BoundaryValueProblem& problem, const std::vector<double
     else
       text << ", past a conjugate time at " << conjugate.times.front();
   }
-  return {text.str(), !(condition * std::numeric_limits<double>::epsilon() < 1)};
+  return {text.str(), !(condition * kEpsilon < 1)};
 }
 
-// How far extremals went that were found but not wanted; infinite where there is none.
+// The length of the shortest extremal that was found but is too long; infinite where there is none.
 double shortest_length(const Search& search) {
   double shortest = std::numeric_limits<double>::infinity();
   for (const Extremal& longer : search.extremals(true)) {
@@ -62,7 +63,7 @@ double shortest_length(const Search& search) {
   return shortest;
 }
 
-// What became of discrete extremals, none of which is verified.
+// What became of the discrete extremals, where none is verified.
 std::string fate(Reason furthest) {
   switch (furthest) {
     case Reason::kNotRefined:

@@ -14,9 +14,9 @@ struct Failure {
   std::string message;
 };
 
-// Where the search came nearest: the residual of the best path and, at its momentum, rank and
-// condition of dq(T)/dp0, how far its end is from the target, the first conjugate time and whether
-// the saddle system at the ends is regular.
+// The message says where the search came nearest. It gives the residual of the best path and, at
+// its momentum, rank and condition of dq(T)/dp0, how far its end is from the target, the first
+// conjugate time, and whether the saddle system is regular at the target.
 Failure explain_failure(const BoundaryValueProblem& problem,
                         const Search& search,
                         const GeodesicOptions& options);

@@ -8,8 +8,9 @@
 
 namespace carnot::internal {
 
-// Start i: the momentum of the straight line first, then random ones of its size times 0.1 to 10,
-// on the manifold where there are holonomic constraints. Empty where a draw has none.
+// Start 0 is the momentum of the straight line. The others are random, of its size times 0.1 to 10.
+// Where holonomic constraints need forces they are brought to the manifold; the result is empty
+// where that fails.
 std::vector<double> momentum_start(const BoundaryValueProblem& problem, std::uint64_t seed, int i);
 
 }  // namespace carnot::internal

@@ -104,7 +104,7 @@ bool NearTarget::shrink(Way way, Path& path) const {
     for (int j = 0; j < n; ++j) {
       const double shrunk =
           reached.row(j).cwiseAbs().maxCoeff() / beside.row(j).cwiseAbs().maxCoeff();
-      if (!(shrunk > 0)) continue;  // or not a number, where there was nothing
+      if (!(shrunk > 0)) continue;  // zero or NaN: the coordinate does not leave the line
       exponent[j] = std::clamp(std::log(shrunk) / std::log(part), 0.0, 5.0);
     }
     path = std::move(trial);

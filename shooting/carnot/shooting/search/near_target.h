@@ -1,10 +1,10 @@
 // Discrete extremals to targets that are very near, by way of targets that are not.
 //
 // A target whose displacement takes brackets of order w and has size d^w is reached by a path of
-// size d with momenta up to d^(1 - w) or so: the ratio of the scales leaves a penalty method no
-// digits. Dilated (dilation.h) the target is easy, and its extremals look like those wanted;
-// Newton's method (discrete_newton.h) follows each while the dilation is taken back. By what power
-// of the dilation a coordinate of the path shrinks is read off the last step.
+// size d, with momenta up to about d^(1 - w). This ratio of the scales leaves a penalty method no
+// digits. Dilated (dilation.h), the target is easy, and its extremals look like those that are
+// wanted. Newton's method (discrete_newton.h) follows each of them while the dilation is taken
+// back. The last step tells by what power of the dilation each coordinate of the path shrinks.
 #pragma once
 
 #include <optional>
@@ -18,18 +18,17 @@ namespace carnot::internal {
 
 class NearTarget {
  public:
-  // Nothing where the problem is easy as it is, or has no dilation.
+  // Nothing where the problem is easy as it is, or where the scene has no dilation at the start.
   static std::optional<NearTarget> of(const BoundaryValueProblem& problem);
 
-  // A way to the target: by dilations, or straight, by stretching its displacement as it is, from
-  // where the path is about `factor` times larger.
+  // A way to the target from one where the path is about `factor` times larger. That one is reached
+  // by a dilation or, straight, by stretching the displacement as it is.
   struct Way {
     double factor = 1;
     bool straight = false;
   };
-  // The one that a start uses: by dilation from where relaxation does best, straight, or from half
-  // or a quarter of the dilation. On the way back extremals meet others, and what is found by one
-  // may be lost by another.
+  // The way that a start uses: by dilation from where relaxation does best, straight, or by half of
+  // that dilation. On the way back extremals meet others, so one way may find what another loses.
   [[nodiscard]] Way way(int start) const;
   // The easy problem.
   [[nodiscard]] BoundaryValueProblem easy(const Way& way) const;

@@ -9,8 +9,9 @@
 
 namespace carnot::internal {
 
-// Refines the path (refinement.h) and joins the knots on it (multiple_shooting.h): as many of them,
-// and as many steps, as the tangent flow asks for; where that fails, shoots along it.
+// Refines the path (refinement.h) and joins the knots on it (multiple_shooting.h). There are as
+// many knots, and as many steps, as the tangent flow asks for. Where that fails, shoots along the
+// path.
 Outcome polish(const BoundaryValueProblem& problem,
                const GeodesicOptions& options,
                const Path& path);
@@ -20,9 +21,10 @@ Outcome polish(const BoundaryValueProblem& problem,
                const GeodesicOptions& options,
                const Knots& knots);
 
-// By single shooting from the velocity at the start, without multipliers. Where a path is abnormal
-// as well as normal, a grid that only nearly satisfies the constraints along it has large ones,
-// which lead nowhere, or no discrete extremal at all. Cost: a few tangent flows.
+// Single shooting from the velocity at the start of a path, without its multipliers. This is for
+// paths that are abnormal as well as normal. A grid that only nearly satisfies the constraints
+// along such a path has large multipliers, which lead nowhere, or no discrete extremal at all.
+// Cost: a few tangent flows.
 Outcome shoot_along(const BoundaryValueProblem& problem,
                     const GeodesicOptions& options,
                     const Path& path);

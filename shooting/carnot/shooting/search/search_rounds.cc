@@ -20,7 +20,9 @@ namespace carnot::internal {
 namespace {
 
 constexpr int kMaxIntervals = 128;  // of the grids that paths are relaxed on
-constexpr int kArtefacts = 3;  // of a round, that are more than the rest: the grid is too coarse
+// Where so many discrete extremals of a round are artefacts, and more than are not, the grid is too
+// coarse.
+constexpr int kArtefacts = 3;
 constexpr int kMaxStiffness = 2;
 
 double energy_of(double length, double time) {
@@ -113,7 +115,8 @@ void Search::sweep_round(int round) {
   SweepOptions sweep;
   sweep.seed = options_.seed;
   sweep.round = round;
-  sweep.intervals = round % 2 == 0 ? 64 : 160;  // the longest wind more often than a grid sees
+  // The longest extremals wind more often than a coarse grid sees.
+  sweep.intervals = round % 2 == 0 ? 64 : 160;
   sweep.momentum_scale.assign(problem_.dynamics.dof, 0.0);
   // Row j: the momentum of coordinate j in the units of the shortest extremal.
   const Eigen::MatrixXd natural =
@@ -137,6 +140,8 @@ void Search::sweep_round(int round) {
     scale = std::max(scale, 0.3 * largest * natural.row(j).norm());
   }
   longest = std::max(longest, std::sqrt(2.0) * shortest);
+  // Measured: when all sweeps grew from the longest extremal found, one that is 2.1 times as long
+  // as the next shorter one was found with one seed of three.
   const bool farthest = round % 2 == 1 && std::isfinite(options_.max_length);
   longest = farthest ? options_.max_length : std::min(longest, options_.max_length);
   sweep.lowest = energy_of(0.8 * shortest, problem_.time);

@@ -1,18 +1,19 @@
 // Paths to start a relaxation from.
 //
-// The straight line, then straight lines plus a wiggle, sum_m a_m sin(m pi s) in every coordinate.
-// Every fourth start is designed while there are any left: the first mode in one coordinate, the
-// second in another, each with either sign. Such a path encloses area in the plane of the two,
-// which is how brackets of the admissible directions are made; a change of sign is its mirror
-// image. The rest are random combinations, each from its own generator, so that start i is the same
-// whatever else is computed. Nothing depends on where the origin is.
+// The first is the straight line. The others are the straight line plus a wiggle, which is
+// sum_m a_m sin(m pi s) in every coordinate. Every fourth start is designed while there are any
+// left: it has the first mode in one coordinate and the second in another, each with either sign.
+// Such a path encloses area in the plane of the two, which is how brackets of the admissible
+// directions are made; a change of sign is its mirror image. The rest are random combinations. Each
+// has a generator of its own, so that start i is the same whatever else is computed. Nothing
+// depends on where the origin is.
 //
-// Scale: with D the length of the straight line in the metric M and S the length of one radian,
-// the wiggle has size S (D/S)^e, e = 1/3, 1/2, 1 in turn: a displacement of size D that needs
-// brackets of order r costs a path of length D^(1/r). Where the straight line violates the
-// constraints and is short, e = 1 is hopeless and is left out. A wiggle that leaves the chart is
-// made smaller, unless the straight line does. Paths are brought to the manifold of holonomic
-// constraints.
+// The scale: let D be the length of the straight line in the metric M, and S the length of one
+// radian. The wiggle has the size S (D/S)^e with e = 1/3, 1/2, 1 in turn, because a displacement of
+// size D that needs brackets of order r costs a path of length D^(1/r). Where the straight line
+// violates the constraints and is short, e = 1 is hopeless and is left out. A wiggle that leaves
+// the chart is made smaller, unless the straight line leaves it, too. Where there are holonomic
+// constraints, the nodes are brought to their manifold.
 #pragma once
 
 #include <cstdint>

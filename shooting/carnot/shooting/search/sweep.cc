@@ -51,8 +51,8 @@ std::vector<double> draw(const BoundaryValueProblem& problem, const SweepOptions
   return draw_momentum(problem, options, random);
 }
 
-// How far an end is from the target. Where that is near, coordinates of all weights count alike, as
-// they do not by themselves.
+// How far an end is from the target. Where the target is near, coordinates of higher weight are
+// much smaller than others; they are dilated first, so that all count alike.
 class Miss {
  public:
   explicit Miss(const BoundaryValueProblem& problem) : problem_(problem) {

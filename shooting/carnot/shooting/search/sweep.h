@@ -1,10 +1,10 @@
 // Near hits: extremals from random momenta that end close to the target.
 //
-// A relaxation finds minimisers; extremals past a conjugate point are saddles of the action and
-// need another route. Momenta are drawn at random on energies between given bounds, the flows are
-// run, side by side in packs where the scene has them, and those that end nearest to the target
-// become paths: the end is pulled to the target, the pull spread evenly over time, and Newton's
-// method (discrete_newton.h) does the rest.
+// A relaxation finds minimisers. Extremals past a conjugate point are saddles of the action and
+// need another route. So momenta are drawn at random, on energies between given bounds, and their
+// flows are run side by side, in packs where the scene has them. Those that end nearest to the
+// target become paths: the end is pulled to the target, and the pull is spread evenly over time.
+// Newton's method (discrete_newton.h) does the rest.
 #pragma once
 
 #include <cstdint>

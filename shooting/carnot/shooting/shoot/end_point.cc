@@ -12,7 +12,7 @@ double largest_difference(const double* a, const double* b, int count) {
   double largest = 0;
   for (int j = 0; j < count; ++j) {
     const double difference = std::abs(a[j] - b[j]);
-    largest = difference <= largest ? largest : difference;  // keeps a NaN
+    largest = difference <= largest ? largest : difference;  // a NaN stays
   }
   return largest;
 }
@@ -97,12 +97,13 @@ void reduce(const BoundaryValueProblem& problem,
   if (kernel.cols() == 0) return;
   const Eigen::Map<const Eigen::VectorXd> p(p0.data(), static_cast<Eigen::Index>(p0.size()));
   const Eigen::VectorXd least = p - kernel * (kernel.transpose() * p);
-  // Without the kernel first: along it the end hardly moves, and Newton's method would go back.
+  // A generous rank comes first: it leaves the kernel alone. Along the kernel the end hardly moves,
+  // and Newton's method would go back along it.
   constexpr double kSlack = 100;
   std::vector<double> trial;
   Eigen::MatrixXd there;
   bool arrives = false;
-  for (const double rank : {kGenerous, kRankThreshold}) {
+  for (const double rank : {kGenerous, kRankRoundOff}) {
     if (arrives) break;
     trial.assign(least.data(), least.data() + least.size());
     there = tangent;

@@ -6,11 +6,12 @@
 #include <vector>
 
 #include "carnot/shooting/boundary_value_problem.h"
+#include "carnot/shooting/linear/round_off.h"
 #include "carnot/shooting/problem/units.h"
 
 namespace carnot::internal {
 
-// max |a_j - b_j|; NaN when one is not a number.
+// max |a_j - b_j|. NaN where a number is NaN.
 double largest_difference(const double* a, const double* b, int count);
 
 // The columns (dq(t)/dp0; dp(t)/dp0), 2n x n, along the extremal from p0; z(t) in `z`. Nothing when
@@ -21,15 +22,12 @@ std::optional<Eigen::MatrixXd> end_point_tangent(const BoundaryValueProblem& pro
                                                  long steps,
                                                  std::vector<double>& z);
 
-// An orthonormal basis of the directions of p0 that do not move q(t), n x nullity: where the plane
-// that the columns span is within an angle `tolerance` of the vertical. Growth of the columns,
-// which makes dq(t)/dp0 look singular, does not matter.
+// An orthonormal basis, n x nullity, of the directions of p0 that do not move q(t). In these the
+// plane that the columns of the tangent span is within an angle `tolerance` of the vertical. Growth
+// of the columns, which makes dq(t)/dp0 look singular, does not matter.
 Eigen::MatrixXd kernel_of(const Units& units,
                           const Eigen::MatrixXd& tangent,
                           double tolerance = 1e-9);
-
-// Singular values of a Jacobian below this, relative, are round-off.
-inline constexpr double kRankThreshold = 1e-13;
 
 // Newton's method on q(T) = to, to the tolerance or as far as it goes; steps of least norm where
 // the Jacobian is singular, to `rank`. Returns the end point error that p0 reaches, and the tangent
@@ -39,12 +37,12 @@ double correct(const BoundaryValueProblem& problem,
                double tolerance,
                std::vector<double>& p0,
                Eigen::MatrixXd& tangent,
-               double rank = kRankThreshold);
+               double rank = kRankRoundOff);
 
-// Where directions of p0 do not move the end point, the member of least norm, if it is the same
-// path: on an abnormal extremal any multiple of the abnormal covector may be added. Where two such
-// directions meet Newton's method converges slowly and its last steps are along them; so they are
-// looked for with a generous tolerance.
+// Where directions of p0 do not move the end point, p0 becomes the member of least norm, if that is
+// the same path. This is so on an abnormal extremal, where any multiple of the abnormal covector
+// may be added. Where two such directions meet, Newton's method converges slowly and its last steps
+// are along them. So they are looked for with a generous tolerance.
 void reduce(const BoundaryValueProblem& problem,
             long steps,
             double tolerance,

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "carnot/shooting/linear/banded_lu.h"
+#include "carnot/shooting/linear/norm.h"
 #include "carnot/shooting/shoot/multiple_shooting.h"
 #include "carnot/shooting/shoot/shooting_equations.h"
 
@@ -65,12 +66,6 @@ class Banded {
   double growth_ = 0;
 };
 
-double norm(const std::vector<double>& x) {
-  double sum = 0;
-  for (const double value : x) sum += value * value;
-  return std::sqrt(sum);
-}
-
 }  // namespace
 
 Shooting shoot_with_newton(const BoundaryValueProblem& problem,
@@ -92,7 +87,7 @@ Shooting shoot_with_newton(const BoundaryValueProblem& problem,
   std::vector<double> simplified;
   while (result.residual > options.tolerance && result.iterations < options.max_iterations) {
     if (result.growth > options.max_growth) break;
-    // Far from joined and not on the way.
+    // The knots are far from joined and hardly come nearer.
     if (result.iterations == kTrials && result.residual > kContracts * first) break;
     ++result.iterations;
     step = residual;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "carnot/shooting/linear/round_off.h"
+
 namespace carnot::internal {
 
 ShootingEquations::ShootingEquations(const BoundaryValueProblem& problem,
@@ -20,9 +22,9 @@ ShootingEquations::ShootingEquations(const BoundaryValueProblem& problem,
       p_scale = std::max(p_scale, std::abs(knots.at(i)[dof_ + j]));
     }
   }
-  constexpr double kRest = 1e-12;  // less is round-off: nothing moves, and any unit will do
-  if (q_scale < kRest) q_scale = 1;
-  if (p_scale < kRest) p_scale = 1;
+  // Where nothing moves any unit will do.
+  if (q_scale < kRestRoundOff) q_scale = 1;
+  if (p_scale < kRestRoundOff) p_scale = 1;
   scale_.assign(2 * dof_, p_scale);
   std::fill(scale_.begin(), scale_.begin() + dof_, q_scale);
 }

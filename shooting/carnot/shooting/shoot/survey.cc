@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "carnot/shooting/linear/round_off.h"
+
 namespace carnot::internal {
 namespace {
 
@@ -15,7 +17,7 @@ std::vector<double> times_of_segment(const BoundaryValueProblem& problem,
   std::vector<double> times;
   const double start = problem.time * i / segments;
   const double end = problem.time * (i + 1) / segments;
-  const double slack = 1e-12 * problem.time;
+  const double slack = kTimeRoundOff * problem.time;
   for (const double t : sample_times(whole, samples)) {
     const bool last = i + 1 == segments;
     if (t >= start - slack && (last || t < end - slack)) times.push_back(std::min(t, end));

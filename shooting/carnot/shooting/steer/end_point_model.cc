@@ -76,7 +76,7 @@ bool EndPointModel::solve(const Vector& change, Prediction& at) const {
     if (!(step.norm() <= x.norm())) return false;
     if (step.norm() > kClose * x.norm()) continue;
     at.inverse = small_lu_inverse(slope);
-    // The terms of a series that goes on as it began.
+    // The error is the next term of a series that goes on as it began.
     const double second = square.cwiseAbs().maxCoeff();
     const double third = cube.cwiseAbs().maxCoeff();
     at.error = second > 0 ? third * third / second : 0;

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "carnot/shooting/extremal/symmetry.h"
+#include "carnot/shooting/linear/round_off.h"
 
 namespace carnot::internal {
 namespace {
@@ -35,12 +35,11 @@ double distance_apart(const SceneInfo& info,
                       const SteeringRules& rules,
                       std::span<const double> from,
                       std::span<const double> to) {
-  constexpr double kRoundOff = 4 * std::numeric_limits<double>::epsilon();
   double sum = 0;
   bool apart = false;
   for (std::size_t j = 0; j < from.size(); ++j) {
     const double step = std::abs(wrapped(info, rules, j, to[j] - from[j]));
-    apart = apart || step > kRoundOff * (std::abs(from[j]) + std::abs(to[j]));
+    apart = apart || step > kSameCoordinate * (std::abs(from[j]) + std::abs(to[j]));
     sum = std::hypot(sum, step);
   }
   return apart ? sum : 0;

@@ -54,8 +54,9 @@ GeodesicOptions SteeringSearch::options_of_search(int count) const {
   return search;
 }
 
-// What an angle can turn per length: sqrt(v_j) at the velocity v of the momentum e_j, the largest
-// of a sample of configurations. With a potential the length bounds no action.
+// What an angle can turn per length is sqrt(v_j) at the velocity v of the momentum e_j. The rate is
+// the largest of a sample of configurations. With a potential the length bounds no action, and the
+// rates stay 0.
 void SteeringSearch::measure_rates() {
   constexpr int kConfigurations = 256;
   constexpr double kMargin = 1.03;
@@ -86,7 +87,7 @@ void SteeringSearch::measure_rates() {
   }
 }
 
-// No path has less: by how far its angles turn.
+// No path has less action than this, since its angles turn so far.
 double SteeringSearch::least_action(const BoundaryValueProblem& problem) const {
   double length = 0;
   for (std::size_t j = 0; j < rates_.size(); ++j) {
@@ -170,7 +171,7 @@ std::vector<std::shared_ptr<const SteeringAnswer>> SteeringSearch::answers(
   return shared;
 }
 
-// q and p of the answer at s T, in the frame; and q contracted.
+// q and p of the answer at s T, in the frame, with q contracted.
 bool SteeringSearch::follow(const SteeringAnswer& answer,
                             const SteeringSense& sense,
                             double s,

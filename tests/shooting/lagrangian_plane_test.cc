@@ -1,0 +1,92 @@
+// Planes in closed form: two oscillators, X = diag(sin a, sin b), P = diag(cos a, cos b).
+#include "carnot/shooting/linear/lagrangian_plane.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "carnot/shooting/linear/dense.h"
+#include "shooting/symplectic.h"
+
+namespace carnot::internal {
+namespace {
+
+using Eigen::MatrixXd;
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kRounded = 1e-13;
+
+MatrixXd plane_of(double a, double b) {
+  MatrixXd plane = MatrixXd::Zero(4, 2);
+  plane.diagonal() << std::sin(a), std::sin(b);
+  plane.bottomRows(2).diagonal() << std::cos(a), std::cos(b);
+  return plane;
+}
+
+MatrixXd rotation(double angle) {
+  MatrixXd r(2, 2);
+  r << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
+  return r;
+}
+
+TEST(LagrangianPlane, PhasesAreTwiceTheAngles) {
+  const Phases phases = phases_of(plane_of(-0.6, 0.2));
+  EXPECT_NEAR(phases.angles[0], 0.4, kRounded);
+  EXPECT_NEAR(phases.angles[1], -1.2, kRounded);
+  EXPECT_NEAR(phases.turn, -0.4, kRounded);
+}
+
+TEST(LagrangianPlane, PhasesDoNotDependOnTheBasis) {
+  const MatrixXd plane = plane_of(0.9, 0.3);
+  const Phases phases = phases_of(plane);
+  for (const double angle : {0.4, 2.0, kPi}) {
+    const Phases other = phases_of(plane * rotation(angle));
+    EXPECT_LE((other.angles - phases.angles).norm(), kRounded);
+    const double turns = (other.turn - phases.turn) / kPi;
+    EXPECT_NEAR(turns, std::round(turns), kRounded);
+  }
+}
+
+TEST(LagrangianPlane, EqualPhasesAreBothSeen) {
+  const Phases phases = phases_of(plane_of(0.5, 0.5) * rotation(0.7));
+  EXPECT_NEAR(phases.angles[0], 1, kRounded);
+  EXPECT_NEAR(phases.angles[1], 1, kRounded);
+}
+
+TEST(LagrangianPlane, PhasesVanishWithTheKernelOfX) {
+  EXPECT_LE(phases_of(plane_of(0, 0)).angles.norm(), kRounded);
+  const Phases one = phases_of(plane_of(kPi, 0.7));
+  EXPECT_NEAR(one.angles[0], 0, kRounded);
+  EXPECT_NEAR(one.angles[1], 1.4, kRounded);
+}
+
+// What a symplectic map makes of a plane is one, too.
+TEST(LagrangianPlane, SymplecticImagesHaveUnitaryBases) {
+  const MatrixXd image = orthonormal(test::symplectic_shear(2) * plane_of(0.4, 1.1));
+  const MatrixXd w = image.transpose() * test::structure_matrix(2) * image;
+  EXPECT_LE(w.norm(), kRounded);
+  EXPECT_TRUE(phases_of(image).angles.allFinite());
+}
+
+TEST(LagrangianPlane, BalancedGraphsHaveModerateAngles) {
+  const MatrixXd plane = plane_of(1e-6, 1.2);
+  const Graph graph = graph_of(plane);
+  EXPECT_EQ(graph.kernel, 0);
+  EXPECT_NEAR(graph.regularity, std::tan(1e-6) / std::tan(1.2), 1e-18);
+  MatrixXd balanced = plane;
+  balanced.topRows(2) = lu_inverse(graph.balance) * plane.topRows(2);
+  balanced.bottomRows(2) = graph.balance * plane.bottomRows(2);
+  // X = P: all angles are 45 degrees.
+  EXPECT_LE((balanced.topRows(2) - balanced.bottomRows(2)).norm(), 1e-9 * balanced.norm());
+}
+
+TEST(LagrangianPlane, GraphsShowTheKernelOfX) {
+  EXPECT_EQ(graph_of(plane_of(0, 0.8)).kernel, 1);
+  const Graph turned = graph_of(plane_of(0, 0.8) * rotation(0.3));
+  EXPECT_EQ(turned.kernel, 1);
+  EXPECT_TRUE(turned.balance.allFinite());
+}
+
+}  // namespace
+}  // namespace carnot::internal
