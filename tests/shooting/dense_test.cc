@@ -41,6 +41,19 @@ TEST(Dense, LuSolvesAndInverts) {
   expect_equal(small_lu_inverse(small) * small, MatrixXd::Identity(6, 6));
 }
 
+TEST(Dense, Products) {
+  const MatrixXd a = random_matrix(2, 3, 9);
+  const MatrixXd b = random_matrix(3, 2, 10);
+  MatrixXd expected = MatrixXd::Zero(2, 2);
+  for (int i = 0; i < 2; ++i) {
+    for (int j = 0; j < 2; ++j) {
+      for (int k = 0; k < 3; ++k) expected(i, j) += a(i, k) * b(k, j);
+    }
+  }
+  expect_equal(product(a, b), expected);
+  expect_equal(transposed_product(a.transpose(), b), expected);
+}
+
 TEST(Dense, InverseOnlyWhereRegular) {
   const SmallMatrix a = regular(5);
   const auto inverse = small_inverse_if_regular(a, 1e-11);

@@ -14,6 +14,8 @@ using Eigen::VectorXd;
 
 MatrixXd product(const MatrixXd& a, const MatrixXd& b) { return a * b; }
 
+MatrixXd transposed_product(const MatrixXd& a, const MatrixXd& b) { return a.transpose() * b; }
+
 VectorXd lu_solve(const MatrixXd& a, const VectorXd& b) { return a.partialPivLu().solve(b); }
 
 MatrixXd lu_inverse(const MatrixXd& a) { return a.partialPivLu().inverse(); }
@@ -86,7 +88,9 @@ VectorXd least_squares(const MatrixXd& a, const VectorXd& b, double threshold) {
   Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
   decomposition.setThreshold(threshold);
   decomposition.compute(a);
-  return decomposition.solve(b);
+  // A matrix, since for a vector Eigen adds the terms in another order where A lacks rank.
+  const MatrixXd x = decomposition.solve(b);
+  return x.col(0);
 }
 
 }  // namespace carnot::internal

@@ -16,8 +16,10 @@ using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostSmall, 1>;
 using SmallMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostSmall, kMostSmall>;
 
-// A B, so that Eigen's product of large matrices is instantiated once, too.
+// A B and A'B, so that Eigen's product of large matrices is instantiated once, too. A transpose
+// that is made first would add the same terms in another order.
 Eigen::MatrixXd product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
 // A^-1 b and A^-1, by LU factors with partial pivoting.
 Eigen::VectorXd lu_solve(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);

@@ -28,8 +28,8 @@ Phases phases_of(const MatrixXd& plane) {
   for (const double angle : kCombinations) {
     const MatrixXd v =
         symmetric_eigen(std::cos(angle) * real + std::sin(angle) * imaginary).vectors;
-    const MatrixXd a = product(product(v.transpose(), real), v);
-    const MatrixXd b = product(product(v.transpose(), imaginary), v);
+    const MatrixXd a = product(transposed_product(v, real), v);
+    const MatrixXd b = product(transposed_product(v, imaginary), v);
     const double mixed = (a - MatrixXd(a.diagonal().asDiagonal())).cwiseAbs().maxCoeff() +
                          (b - MatrixXd(b.diagonal().asDiagonal())).cwiseAbs().maxCoeff();
     if (!(mixed < best)) continue;

@@ -62,7 +62,7 @@ class Fields {
       derivative.setConstant(std::numeric_limits<double>::quiet_NaN());
     }
     const MatrixXd terms = derivative.topRightCorner(rows - 1, n);
-    return product(terms.transpose(), terms);
+    return transposed_product(terms, terms);
   }
   // The derivative of a field along another one, by central differences.
   [[nodiscard]] VectorXd derivative(int of, int along, const VectorXd& q) const {
@@ -157,7 +157,7 @@ std::optional<Dilation> Dilation::at_start(const BoundaryValueProblem& problem) 
     latest = fields_of(directions);
   }
   if (!flag.complete() || !flag.basis.allFinite()) return std::nullopt;
-  dilation.inverse_ = product(flag.basis.transpose(), fields.metric());
+  dilation.inverse_ = transposed_product(flag.basis, fields.metric());
   dilation.basis_ = std::move(flag.basis);
   dilation.weights_ = std::move(flag.weights);
   return dilation;

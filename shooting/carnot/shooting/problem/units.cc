@@ -51,7 +51,7 @@ MatrixXd Units::map(const MatrixXd& m) const {
   scaled.leftCols(n) = product(m.leftCols(n), e_);
   scaled.rightCols(n) = c_ * product(m.rightCols(n), inverse_.transpose());
   scaled.topRows(n) = product(inverse_, scaled.topRows(n));
-  scaled.bottomRows(n) = product(e_.transpose(), scaled.bottomRows(n)) / c_;
+  scaled.bottomRows(n) = transposed_product(e_, scaled.bottomRows(n)) / c_;
   return scaled;
 }
 
@@ -60,7 +60,7 @@ MatrixXd Units::tangent(const MatrixXd& columns) const {
   const auto n = e_.rows();
   MatrixXd scaled = c_ * product(columns, inverse_.transpose());
   scaled.topRows(n) = product(inverse_, scaled.topRows(n));
-  scaled.bottomRows(n) = product(e_.transpose(), scaled.bottomRows(n)) / c_;
+  scaled.bottomRows(n) = transposed_product(e_, scaled.bottomRows(n)) / c_;
   return scaled;
 }
 
@@ -73,7 +73,7 @@ VectorXd Units::displacement(const VectorXd& q) const {
 }
 
 MatrixXd Units::momenta(const MatrixXd& p) const {
-  return scaled_ ? MatrixXd(c_ * product(inverse_.transpose(), p)) : p;
+  return scaled_ ? MatrixXd(c_ * transposed_product(inverse_, p)) : p;
 }
 
 }  // namespace carnot::internal
