@@ -8,7 +8,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <source_location>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -129,7 +128,7 @@ concept HasParameters = requires {
 template <class Scene>
 std::string type_name() {
   // "... [with Scene = A::Coin<2>; ...]" or "... [Scene = A::Coin<2>]"
-  const std::string text = std::source_location::current().function_name();
+  const std::string text = __PRETTY_FUNCTION__;
   const std::string head = "Scene = ";
   const std::size_t found = text.find(head);
   if (found == std::string::npos) return "scene";

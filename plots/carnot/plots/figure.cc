@@ -107,6 +107,7 @@ std::string write_figure(const std::string& file,
   }
   validate_curves(info, curves, figure);
   std::vector<Trajectory> thin;
+  thin.reserve(curves.size());
   for (const Curve& curve : curves) thin.push_back(thinned(*curve.trajectory, kMostRows));
   std::vector<Curve> drawn = curves;
   for (std::size_t i = 0; i < drawn.size(); ++i) drawn[i].trajectory = &thin[i];

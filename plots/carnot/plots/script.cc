@@ -37,7 +37,7 @@ constexpr std::array<Rgb, 7> kPlasma{{{0x0d, 0x08, 0x87},
 
 }  // namespace
 
-std::string quoted_markup(std::string text) {
+std::string quoted_markup(const std::string& text) {
   std::string out = "'";
   for (const char c : text) {
     if (c == '\'')
@@ -114,7 +114,7 @@ std::string TimeColors::palette() {
 }
 
 double TimeColors::argb(double fraction, int alpha) {
-  const double last = static_cast<double>(kPlasma.size() - 1);
+  const auto last = static_cast<double>(kPlasma.size() - 1);
   const double place = std::clamp(fraction, 0.0, 1.0) * last;
   const auto i = static_cast<std::size_t>(std::min(place, last - 1));
   const double w = place - static_cast<double>(i);
@@ -131,7 +131,7 @@ double TimeColors::pale(double fraction) {
   const auto color = static_cast<unsigned>(argb(rounded, 0));
   double mixed = 0;
   for (const unsigned shift : {16U, 8U, 0U}) {
-    const double part = (color >> shift) & 0xffU;
+    const auto part = static_cast<double>((color >> shift) & 0xffU);
     mixed = mixed * 256 + std::round(part + kVeil * (255 - part));
   }
   return mixed;
@@ -154,7 +154,7 @@ bool drawable(const Rows& rows) {
 
 std::string Script::data(const Rows& rows) {
   if (!drawable(rows)) return {};
-  const std::string name = "$d" + std::to_string(++blocks_);
+  std::string name = "$d" + std::to_string(++blocks_);
   text_ << name << " << EOD\n";
   bool open = false;  // a line has begun
   for (const Row& row : rows) {

@@ -24,7 +24,7 @@ bool drawable(const Rows& rows);
 // 'text' as a gnuplot string that shows exactly these characters.
 std::string quoted(const std::string& text);
 // The same for text that is already in gnuplot's markup.
-std::string quoted_markup(std::string text);
+std::string quoted_markup(const std::string& text);
 // Markup of a coordinate's name: Greek letters, and a trailing number as a subscript.
 std::string symbol(const std::string& name);
 // Characters as they are, in markup.

@@ -92,7 +92,7 @@ std::vector<TimePanel> panels_of(const SceneInfo& info, const Curve& curve, cons
   }
   for (std::size_t i = 0; i < k; ++i) {
     const std::string index = "_{" + std::to_string(i + 1) + "}";
-    lambda.push_back("λ" + index + " [energy/g" + index + "]");
+    lambda.push_back(std::string("λ").append(index).append(" [energy/g").append(index).append("]"));
   }
   std::vector<TimePanel> panels;
   if (on.configuration) panels.push_back(columns("q", trajectory, trajectory.q, q));

@@ -80,7 +80,7 @@ std::string momentum_unit(const std::string& unit) {
   if (unit.empty()) return {};
   Fraction fraction = parsed(unit);
   fraction.below.insert(fraction.below.begin(), "action");
-  const std::string above = joined(fraction.below);
+  std::string above = joined(fraction.below);
   const std::string below = joined(fraction.above);
   if (below.empty()) return above;
   return above + "/" + (fraction.above.size() > 1 ? "(" + below + ")" : below);
