@@ -2,6 +2,7 @@
 #include <string>
 #include <tuple>
 
+#include "carnot/tableau/make_tableau.h"
 #include "testing/geometry_laws.h"
 
 namespace carnot {
