@@ -1,5 +1,5 @@
-// Dynamics whose default method knows its scene: a flow by gauss16 takes up to a tenth less time
-// than through make_dynamics(), and its scene takes five times as long to compile.
+// Dynamics whose default method knows its scene. What that is worth depends on the scene, see
+// erased_system.h; the scene takes several times as long to compile.
 #pragma once
 
 #include <string_view>

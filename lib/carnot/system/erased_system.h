@@ -4,7 +4,8 @@
 // coordinates serves all scenes: it reaches them through the function pointers below, one call for
 // all the stages of a sweep. The kernels are compiled once (flow/make_kernel.h), and a scene
 // compiles no more than its own formulas (system_calls.h). Measured against a kernel that knows its
-// scene, a flow by gauss16 takes 1.1 times as long on the vehicle, other methods 0.8 to 1.1 times.
+// scene, a monitored flow of 20000 steps takes 1.0 (bicycle) to 2.5 times (martinet) as long by
+// gauss16, and 1.1 to 1.9 times by gauss8; searches for geodesics take as long as before.
 #pragma once
 
 #include <algorithm>
