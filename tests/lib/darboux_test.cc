@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,31 @@ MatrixXd random_square(int size, test::Generator& generator) {
   return a;
 }
 
+std::span<const double> numbers(const MatrixXd& a) {
+  return {a.data(), static_cast<std::size_t>(a.size())};
+}
+
+MatrixXd square(const std::vector<double>& numbers) {
+  const auto size = static_cast<int>(std::lround(std::sqrt(numbers.size())));
+  return Eigen::Map<const MatrixXd>(numbers.data(), size, size);
+}
+
+// DarbouxForm with its matrices as such.
+struct Form {
+  int dof = 0;
+  MatrixXd basis;
+  MatrixXd inverse;
+  std::vector<double> sigma;
+};
+
+template <class... Rest>
+Form form_of(const MatrixXd& j, Rest... rest) {
+  const DarbouxForm form = darboux_form(numbers(j), static_cast<int>(j.rows()), rest...);
+  return {form.dof, square(form.basis), square(form.inverse), form.sigma};
+}
+
+MatrixXd canonical(int size, int dof) { return square(canonical_structure(size, dof)); }
+
 // A product of reflections: orthogonal to a few eps.
 MatrixXd random_orthogonal(int size, test::Generator& generator) {
   MatrixXd q = MatrixXd::Identity(size, size);
@@ -45,7 +71,7 @@ MatrixXd random_orthogonal(int size, test::Generator& generator) {
 // Q'J Q where J has these sigma, antisymmetric to the last bit.
 MatrixXd with_sigma(int size, const std::vector<double>& sigma, test::Generator& generator) {
   const auto dof = static_cast<int>(sigma.size());
-  MatrixXd j = canonical_structure(size, dof);
+  MatrixXd j = canonical(size, dof);
   for (int i = 0; i < dof; ++i) {
     j(i, dof + i) *= sigma[static_cast<std::size_t>(i)];
     j(dof + i, i) *= sigma[static_cast<std::size_t>(i)];
@@ -61,7 +87,7 @@ double distance(const MatrixXd& a, const MatrixXd& b) {
 
 // T'J T = J_0 and T T^-1 = 1 to round-off: N eps times sigma_max / sigma_min, times its root.
 void expect_darboux(const MatrixXd& j, int dof) {
-  const DarbouxForm form = darboux_form(j);
+  const Form form = form_of(j);
   ASSERT_EQ(form.dof, dof);
   ASSERT_EQ(form.sigma.size(), static_cast<std::size_t>(dof));
   const auto size = static_cast<int>(j.rows());
@@ -69,7 +95,7 @@ void expect_darboux(const MatrixXd& j, int dof) {
   constexpr double kFew = 8;
   const double unit = kFew * size * kEps;
   const MatrixXd moved = form.basis.transpose() * (j * form.basis);
-  EXPECT_LE(distance(moved, canonical_structure(size, dof)), unit * condition) << j;
+  EXPECT_LE(distance(moved, canonical(size, dof)), unit * condition) << j;
   const MatrixXd identity = MatrixXd::Identity(size, size);
   EXPECT_LE(distance(form.basis * form.inverse, identity), unit * std::sqrt(condition));
   // The kernel comes with an orthonormal basis, so its scale is that of z.
@@ -85,7 +111,7 @@ TEST(DarbouxTest, EveryRankInARandomBasis) {
     for (int dof = 1; 2 * dof <= size; ++dof) {
       for (int sample = 0; sample < 10; ++sample) {
         const MatrixXd a = random_square(size, generator);
-        expect_darboux(a.transpose() * (canonical_structure(size, dof) * a), dof);
+        expect_darboux(a.transpose() * (canonical(size, dof) * a), dof);
       }
     }
   }
@@ -99,7 +125,7 @@ TEST(DarbouxTest, FindsSigmaThatAreKnown) {
       for (int i = 0; i < dof; ++i) sigma.push_back(3 * std::pow(0.2, i));
       const MatrixXd j = with_sigma(size, sigma, generator);
       expect_darboux(j, dof);
-      const DarbouxForm form = darboux_form(j);
+      const Form form = form_of(j);
       for (std::size_t i = 0; i < sigma.size(); ++i) {
         EXPECT_NEAR(form.sigma[i], sigma[i], 8 * size * kEps * sigma[0]);
       }
@@ -122,7 +148,7 @@ TEST(DarbouxTest, EqualSigma) {
 TEST(DarbouxTest, PairedCoordinatesStayThemselves) {
   for (int size = 2; size <= kLargest; ++size) {
     for (int dof = 1; 2 * dof <= size; ++dof) {
-      const DarbouxForm form = darboux_form(canonical_structure(size, dof));
+      const Form form = form_of(canonical(size, dof));
       EXPECT_EQ(form.dof, dof);
       EXPECT_EQ(form.basis, MatrixXd::Identity(size, size));
       EXPECT_EQ(form.inverse, MatrixXd::Identity(size, size));
@@ -135,16 +161,16 @@ TEST(DarbouxTest, PairedCoordinatesStayThemselves) {
   MatrixXd expected = MatrixXd::Zero(3, 3);
   expected(2, 0) = expected(0, 1) = 0.5;
   expected(1, 2) = 1;
-  EXPECT_EQ(darboux_form(j).basis, expected);
+  EXPECT_EQ(form_of(j).basis, expected);
 }
 
 // Entries of any size, also where their squares would not be numbers.
 TEST(DarbouxTest, DoesNotDependOnUnits) {
   test::Generator generator(4);
   const MatrixXd j = with_sigma(5, {1, 0.5}, generator);
-  const DarbouxForm form = darboux_form(j);
+  const Form form = form_of(j);
   for (const double unit : {std::ldexp(1.0, -900), std::ldexp(1.0, 900)}) {
-    const DarbouxForm other = darboux_form(unit * j);
+    const Form other = form_of(unit * j);
     ASSERT_EQ(other.dof, 2);
     EXPECT_EQ(other.sigma[1], unit * form.sigma[1]);
     const MatrixXd pairs = std::sqrt(unit) * other.basis.leftCols(4);
@@ -167,8 +193,8 @@ TEST(DarbouxTest, ToleranceOfTheRank) {
   for (int size = 4; size <= kLargest; ++size) {
     const double zero = kRankTolerance * size * kEps * 3;
     for (int sample = 0; sample < 20; ++sample) {
-      EXPECT_EQ(darboux_form(with_sigma(size, {3, 4 * zero}, generator)).dof, 2);
-      EXPECT_EQ(darboux_form(with_sigma(size, {3, zero / 4}, generator)).dof, 1);
+      EXPECT_EQ(form_of(with_sigma(size, {3, 4 * zero}, generator)).dof, 2);
+      EXPECT_EQ(form_of(with_sigma(size, {3, zero / 4}, generator)).dof, 1);
     }
   }
 }
@@ -184,22 +210,22 @@ std::string reason(const F& f) {
 }
 
 TEST(DarbouxTest, RefusesWithAReason) {
-  const auto of = [](const MatrixXd& j) { return reason([&] { (void)darboux_form(j); }); };
-  MatrixXd j = canonical_structure(5, 2);
+  const auto of = [](const MatrixXd& j) { return reason([&] { (void)form_of(j); }); };
+  MatrixXd j = canonical(5, 2);
   EXPECT_EQ(of(j), "accepted");
   EXPECT_THAT(of(MatrixXd::Zero(5, 5)), HasSubstr("purely algebraic"));
   EXPECT_THAT(of(MatrixXd::Zero(1, 1)), HasSubstr("purely algebraic"));
   for (const double bad : {kNan, kInf, -kInf}) {
-    j = canonical_structure(5, 2);
+    j = canonical(5, 2);
     j(1, 3) = bad;
     EXPECT_THAT(of(j), HasSubstr("not finite"));
   }
   EXPECT_THAT(of(MatrixXd::Identity(4, 4)), HasSubstr("not antisymmetric"));
   for (const auto& [r, c] : {std::pair{0, 1}, {2, 2}, {4, 0}}) {
-    j = canonical_structure(5, 2);
+    j = canonical(5, 2);
     j(r, c) += 1e-6;
     EXPECT_THAT(of(j), HasSubstr("not antisymmetric")) << r << c;
-    j = canonical_structure(5, 2);
+    j = canonical(5, 2);
     j(r, c) += kEps;
     EXPECT_EQ(of(j), "accepted") << "round-off of a product A'J A";
   }
@@ -208,9 +234,9 @@ TEST(DarbouxTest, RefusesWithAReason) {
 TEST(DarbouxTest, RefusesAnotherRankThanDeclared) {
   test::Generator generator(7);
   const MatrixXd j = with_sigma(6, {2, 1}, generator);
-  EXPECT_EQ(darboux_form(j, 2).dof, 2);
+  EXPECT_EQ(form_of(j, 2).dof, 2);
   for (const int declared : {1, 3}) {
-    const std::string why = reason([&] { (void)darboux_form(j, declared); });
+    const std::string why = reason([&] { (void)form_of(j, declared); });
     EXPECT_THAT(why, HasSubstr("has rank 4"));
     EXPECT_THAT(why, HasSubstr("declares " + std::to_string(2 * declared)));
   }
@@ -219,11 +245,11 @@ TEST(DarbouxTest, RefusesAnotherRankThanDeclared) {
 TEST(DarbouxTest, ChecksACoordinateSystemWrittenByHand) {
   test::Generator generator(8);
   const MatrixXd j = with_sigma(6, {2, 1}, generator);
-  const MatrixXd t = darboux_form(j).basis;
+  const MatrixXd t = form_of(j).basis;
   const auto of = [&](const MatrixXd& basis) {
-    return reason([&] { (void)darboux_form(j, 2, basis); });
+    return reason([&] { (void)form_of(j, 2, numbers(basis)); });
   };
-  const DarbouxForm form = darboux_form(j, 2, t);
+  const Form form = form_of(j, 2, numbers(t));
   EXPECT_EQ(form.basis, t);
   EXPECT_LE(distance(form.inverse * t, MatrixXd::Identity(6, 6)), 100 * kEps);
   EXPECT_THAT(of(MatrixXd::Identity(6, 6)), HasSubstr("does not bring J to Darboux form"));

@@ -26,265 +26,41 @@
 // Accuracy: T'J T = J_0 to N eps sigma_max / sigma_min, where sigma_min is the least that is not
 // zero; the last digits of J allow no more. In a wider scalar than double the flow is therefore
 // that of a J which differs by so much from the given one.
+//
+// All matrices are plain numbers, column by column, so that what is compiled with the library and
+// what is compiled with a scene need not have the same Eigen.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <sstream>
-#include <stdexcept>
-#include <string>
+#include <span>
 #include <vector>
-
-#include "carnot/numerics/linear_algebra.h"
-#include "carnot/numerics/lu.h"
 
 namespace carnot {
 
 // In units of N eps times the size of the matrix: what counts as zero.
 inline constexpr double kRankTolerance = 8;
 
-// z = basis (q, p, y) and back.
+// z = basis (q, p, y) and back, both N x N.
 struct DarbouxForm {
   int dof = 0;  // half the rank of J
-  Eigen::MatrixXd basis;
-  Eigen::MatrixXd inverse;
+  std::vector<double> basis;
+  std::vector<double> inverse;
   std::vector<double> sigma;  // of the pairs (q_i, p_i); empty for a T written by hand
 };
 
-namespace darboux_steps {
-
-using Square = Eigen::MatrixXd;
-
-// Orthonormal columns with q'J p = -sigma < 0.
-struct Pair {
-  Eigen::VectorXd q;
-  Eigen::VectorXd p;
-  double sigma = 0;
-};
-
-inline double round_off(const Square& a) {
-  return kRankTolerance * static_cast<double>(a.rows()) * std::numeric_limits<double>::epsilon();
-}
-
-inline std::string text(double x) {
-  std::ostringstream out;
-  out << x;
-  return out.str();
-}
-
-// (J - J')/2. Throws unless J is finite, antisymmetric to round-off, and not zero.
-inline Square checked(const Square& j) {
-  if (!j.allFinite()) {
-    throw std::invalid_argument("the structure matrix J has entries that are not finite");
-  }
-  const double size = j.cwiseAbs().maxCoeff();
-  const double defect = (j + j.transpose()).cwiseAbs().maxCoeff();
-  if (defect > round_off(j) * size) {
-    throw std::invalid_argument("the structure matrix J is not antisymmetric: |J + J'| = " +
-                                text(defect));
-  }
-  Square antisymmetric = 0.5 * (j - j.transpose());
-  if (antisymmetric.cwiseAbs().maxCoeff() == 0) {
-    throw std::invalid_argument("the structure matrix J is zero: purely algebraic, nothing moves");
-  }
-  return antisymmetric;
-}
-
-// True where no row of J has two entries.
-inline bool pairs_the_coordinates(const Square& j) {
-  for (int r = 0; r < j.rows(); ++r) {
-    if ((j.row(r).array() != 0).count() > 1) return false;
-  }
-  return true;
-}
-
-inline std::vector<Pair> own_pairs(const Square& j) {
-  const Square unit = Square::Identity(j.rows(), j.cols());
-  std::vector<Pair> pairs;
-  for (int q = 0; q < j.rows(); ++q) {
-    for (int p = 0; p < j.cols(); ++p) {
-      if (j(q, p) < 0) pairs.push_back({unit.col(q), unit.col(p), -j(q, p)});
-    }
-  }
-  return pairs;
-}
-
-// J <- Q'J Q, tridiagonal; returns Q. With H = I - 2 v v' and w = J v, HJH = J + 2 (v w' - w v').
-inline Square tridiagonalise(Square& j) {
-  const auto size = static_cast<int>(j.rows());
-  Square q = Square::Identity(size, size);
-  for (int k = 0; k + 2 < size; ++k) {
-    Eigen::VectorXd v = Eigen::VectorXd::Zero(size);
-    for (int i = k + 1; i < size; ++i) v[i] = j(i, k);
-    if (v.tail(size - k - 2).cwiseAbs().maxCoeff() == 0) continue;
-    v[k + 1] += std::copysign(v.norm(), v[k + 1]);
-    v /= v.norm();
-    const Eigen::VectorXd w = j.lazyProduct(v);
-    const Eigen::VectorXd qv = q.lazyProduct(v);
-    for (int c = 0; c < size; ++c) {
-      for (int r = 0; r < size; ++r) {
-        j(r, c) += 2 * (v[r] * w[c] - w[r] * v[c]);
-        q(r, c) -= 2 * qv[r] * v[c];
-      }
-    }
-    for (int i = k + 2; i < size; ++i) j(i, k) = j(k, i) = 0;
-  }
-  return q;
-}
-
-// Rotates the columns of b, and those of y likewise, until they are orthogonal: B Y = X Sigma.
-inline void orthogonalise_columns(Square& b, Square& y) {
-  constexpr int kMaxSweeps = 60;  // ten are many
-  // What round-off of the products alone can leave.
-  const double zero = 2 * static_cast<double>(b.rows()) * std::numeric_limits<double>::epsilon();
-  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
-    bool rotated = false;
-    for (int i = 0; i + 1 < b.cols(); ++i) {
-      for (int j = i + 1; j < b.cols(); ++j) {
-        const double ii = b.col(i).squaredNorm();
-        const double jj = b.col(j).squaredNorm();
-        const double ij = b.col(i).dot(b.col(j));
-        if (!(std::abs(ij) > zero * std::sqrt(ii) * std::sqrt(jj))) continue;
-        rotated = true;
-        const double cot = (jj - ii) / (2 * ij);
-        const double tan = std::copysign(1 / (std::abs(cot) + std::hypot(1, cot)), cot);
-        const double cosine = 1 / std::hypot(1, tan);
-        for (Square* a : {&b, &y}) {
-          const Eigen::VectorXd left = a->col(i);
-          a->col(i) = cosine * (left - tan * a->col(j));
-          a->col(j) = cosine * (a->col(j) + tan * left);
-        }
-      }
-    }
-    if (!rotated) return;
-  }
-  throw std::invalid_argument("the Schur form of the structure matrix J was not found");
-}
-
-inline std::vector<Pair> schur_pairs(const Square& matrix) {
-  const double scale = matrix.cwiseAbs().maxCoeff();
-  Square j = matrix / scale;
-  const auto size = static_cast<int>(j.rows());
-  const Square q = tridiagonalise(j);
-  const int odd = size / 2;
-  Square b = Square::Zero(size - odd, odd);  // rows: even coordinates
-  Square y = Square::Identity(odd, odd);
-  for (int c = 0; c < odd; ++c) {
-    for (int r = 0; r < size - odd; ++r) b(r, c) = j(2 * r, 2 * c + 1);
-  }
-  orthogonalise_columns(b, y);
-  std::vector<Pair> pairs;
-  for (int c = 0; c < odd; ++c) {
-    const double sigma = b.col(c).norm();
-    if (sigma == 0) continue;
-    Pair pair{Eigen::VectorXd::Zero(size), Eigen::VectorXd::Zero(size), scale * sigma};
-    for (int r = 0; r < odd; ++r) pair.q += y(r, c) * q.col(2 * r + 1);
-    for (int r = 0; r < size - odd; ++r) pair.p += (b(r, c) / sigma) * q.col(2 * r);
-    pairs.push_back(pair);
-  }
-  std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& other) {
-    return a.sigma > other.sigma;
-  });
-  return pairs;
-}
-
-// Fills u from column `from` on with an orthonormal basis of the complement of those before: the
-// unit vector that the columns span least of all, orthogonalised twice.
-inline void complete(Square& u, int from) {
-  for (int c = from; c < u.cols(); ++c) {
-    const auto before = u.leftCols(c);
-    int least = 0;
-    before.rowwise().squaredNorm().minCoeff(&least);
-    Eigen::VectorXd v = Eigen::VectorXd::Unit(u.rows(), least);
-    for (int pass = 0; pass < 2; ++pass) {
-      for (int i = 0; i < c; ++i) v -= u.col(i).dot(v) * u.col(i);
-    }
-    u.col(c) = v / v.norm();
-  }
-}
-
-}  // namespace darboux_steps
-
 // J_0 of this size and rank 2 `dof`.
-inline Eigen::MatrixXd canonical_structure(int size, int dof) {
-  Eigen::MatrixXd j = Eigen::MatrixXd::Zero(size, size);
-  for (int i = 0; i < dof; ++i) {
-    j(i, dof + i) = -1;
-    j(dof + i, i) = 1;
-  }
-  return j;
-}
+std::vector<double> canonical_structure(int size, int dof);
 
-// Throws std::invalid_argument for a J that is not finite, not antisymmetric or zero.
-// Cost about 10 N^3 multiplications.
-inline DarbouxForm darboux_form(const Eigen::MatrixXd& structure_matrix) {
-  using namespace darboux_steps;
-  const Square j = checked(structure_matrix);
-  const auto size = static_cast<int>(j.rows());
-  std::vector<Pair> pairs = pairs_the_coordinates(j) ? own_pairs(j) : schur_pairs(j);
-  double largest = 0;
-  for (const Pair& pair : pairs) largest = std::max(largest, pair.sigma);
-  const double zero = round_off(j) * largest;
-  pairs.erase(
-      std::remove_if(
-          pairs.begin(), pairs.end(), [zero](const Pair& pair) { return pair.sigma <= zero; }),
-      pairs.end());
-
-  DarbouxForm form;
-  form.dof = static_cast<int>(pairs.size());
-  form.basis = Square::Zero(size, size);
-  for (int i = 0; i < form.dof; ++i) {
-    const Pair& pair = pairs[static_cast<std::size_t>(i)];
-    form.basis.col(i) = pair.q;
-    form.basis.col(form.dof + i) = pair.p;
-    form.sigma.push_back(pair.sigma);
-  }
-  complete(form.basis, 2 * form.dof);
-  form.inverse = form.basis.transpose();  // so far orthogonal
-  for (int i = 0; i < 2 * form.dof; ++i) {
-    const double scale = std::sqrt(form.sigma[static_cast<std::size_t>(i % form.dof)]);
-    form.basis.col(i) /= scale;
-    form.inverse.row(i) *= scale;
-  }
-  return form;
-}
+// The form of a J of this size. Throws std::invalid_argument for a J that is not finite, not
+// antisymmetric or zero. Cost about 10 N^3 multiplications.
+DarbouxForm darboux_form(std::span<const double> structure_matrix, int size);
 
 // The same for a J whose rank is declared to be 2 `dof`; throws where it is not.
-inline DarbouxForm darboux_form(const Eigen::MatrixXd& structure_matrix, int dof) {
-  DarbouxForm form = darboux_form(structure_matrix);
-  if (form.dof != dof) {
-    throw std::invalid_argument("the structure matrix J has rank " + std::to_string(2 * form.dof) +
-                                " where the scene declares " + std::to_string(2 * dof));
-  }
-  return form;
-}
+DarbouxForm darboux_form(std::span<const double> structure_matrix, int size, int dof);
 
 // The same for a T written by hand; throws unless it has an inverse and T'J T = J_0 to round-off.
-inline DarbouxForm darboux_form(const Eigen::MatrixXd& structure_matrix,
-                                int dof,
-                                const Eigen::MatrixXd& basis) {
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  using darboux_steps::Square;
-  const Square j = darboux_steps::checked(structure_matrix);
-  const auto size = static_cast<int>(j.rows());
-  const Square jt = j.lazyProduct(basis);
-  const Square moved = basis.transpose().lazyProduct(jt) - canonical_structure(size, dof);
-  const Square sizes = basis.cwiseAbs().transpose().lazyProduct(jt.cwiseAbs());
-  const double defect = moved.cwiseAbs().maxCoeff();
-  if (!(defect <= darboux_steps::round_off(j) * sizes.maxCoeff())) {
-    throw std::invalid_argument(
-        "the scene's own T does not bring J to Darboux form: T'J T is wrong by " +
-        darboux_steps::text(defect));
-  }
-  RowMajor factor = basis;
-  RowMajor inverse = RowMajor::Identity(size, size);
-  constexpr double kHalfTheDigits = 1e-8;
-  if (!lu_solve(size, factor.data(), size, inverse.data()) ||
-      !Square(inverse.lazyProduct(basis)).isIdentity(kHalfTheDigits)) {
-    throw std::invalid_argument("the scene's own T of Darboux coordinates has no inverse");
-  }
-  return {dof, basis, inverse, {}};
-}
+DarbouxForm darboux_form(std::span<const double> structure_matrix,
+                         int size,
+                         int dof,
+                         std::span<const double> basis);
 
 }  // namespace carnot
