@@ -87,7 +87,7 @@ TEST(ScaledLuTest, JetsPartByPart) {
   const Square a = random_indefinite(generator);
   const ScaledLu<double, kSize> lu(a);
   Column parts[4];
-  Vector<J, kSize> b;
+  Vector<J, kSize> b = Vector<J, kSize>::Constant(J());
   for (auto& part : parts) part = test::random_vector<kSize>(generator);
   parts[0][1] = 0;  // a value of zero keeps its derivatives
   for (int i = 0; i < kSize; ++i) {

@@ -1,4 +1,4 @@
-// Fixed-size vectors and matrices over any scalar: double, long double, a quad type, a ceres::Jet.
+// Fixed-size vectors and matrices over any scalar: double, long double, a quad type, a Pack, a Jet.
 //
 // EIGEN_MAX_ALIGN_BYTES is 16 for everyone who includes this, as the target carnot::core sees to,
 // so that files compiled for different instruction sets agree on the layout of vectors.
@@ -21,7 +21,20 @@ using Vector = Eigen::Matrix<T, n, 1>;
 template <class T, int rows, int cols>
 using Matrix = Eigen::Matrix<T, rows, cols>;
 
-// Products as plain sums. Eigen's own start from Scalar(0), which nested ceres::Jets do not accept.
+// A diagonal matrix of these entries: diagonal<T>(1, 1, 0.25, 0.5).
+template <class T, class... Entries>
+Matrix<T, sizeof...(Entries), sizeof...(Entries)> diagonal(const Entries&... entries) {
+  constexpr int n = sizeof...(Entries);
+  const T values[] = {T(entries)...};
+  Matrix<T, n, n> a;
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) a(i, j) = i == j ? values[i] : T(0);
+  }
+  return a;
+}
+
+// Products as plain sums, without Eigen's expressions, which take the compiler several times as
+// long.
 template <class A, class B>
 auto product(const A& a, const B& b) {
   using T = typename A::Scalar;

@@ -1,18 +1,14 @@
 // What the templated formulas ask of a scalar: constants, the underlying value, the round-off unit.
 //
-// A formula is written once and runs on double, long double, a quad type and (nested) ceres::Jet.
-// Nested Jets of Ceres 2.1 convert neither from 0.5 nor multiply by it, hence constant<T>(0.5).
+// A formula is written once and runs on double, long double, a quad type and (nested) Jets.
 #pragma once
-
-#include <ceres/jet.h>
 
 #include <limits>
 #include <type_traits>
 
-namespace carnot {
+#include "carnot/numerics/jet.h"
 
-template <class T, int N>
-using Jet = ceres::Jet<T, N>;
+namespace carnot {
 
 template <class T>
 struct IsJet : std::false_type {};

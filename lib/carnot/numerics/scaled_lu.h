@@ -53,7 +53,7 @@ class ScaledLu {
       for (int i = 0; i < m; ++i) part[i] = b[i].a;
       part = solve(part);
       for (int i = 0; i < m; ++i) x[i].a = part[i];
-      for (int d = 0; d < U::DIMENSION; ++d) {
+      for (int d = 0; d < U::kDirections; ++d) {
         for (int i = 0; i < m; ++i) part[i] = b[i].v[d];
         part = solve(part);
         for (int i = 0; i < m; ++i) x[i].v[d] = part[i];

@@ -14,8 +14,10 @@
 // constraint() is zero and a constraint error of 0 says nothing here.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -80,8 +82,8 @@ class GeneralizedHamiltonian {
   // 2 kDof, when the scene's own T is wrong, and when the index is more than 1 everywhere.
   explicit GeneralizedHamiltonian(Scene scene) : scene_(std::move(scene)) {
     const DarbouxForm form = coordinates(scene_);
-    basis_ = form.basis;
-    inverse_ = form.inverse;
+    std::copy(form.basis.begin(), form.basis.end(), basis_.data());
+    std::copy(form.inverse.begin(), form.inverse.end(), inverse_.data());
     if constexpr (kAlgebraic > 0) refuse_higher_index();
   }
 
@@ -207,12 +209,16 @@ class GeneralizedHamiltonian {
   }
 
  private:
+  static std::span<const double> numbers(const Square& a) {
+    return {a.data(), static_cast<std::size_t>(a.size())};
+  }
   static DarbouxForm coordinates(const Scene& scene) {
     const Square j = scene.structure_matrix();
     if constexpr (HasDarbouxBasis<Scene>) {
-      return darboux_form(j, kDof, Square(scene.darboux_basis()));
+      const Square basis = scene.darboux_basis();
+      return darboux_form(numbers(j), kSize, kDof, numbers(basis));
     } else {
-      return darboux_form(j, kDof);
+      return darboux_form(numbers(j), kSize, kDof);
     }
   }
 
@@ -221,7 +227,7 @@ class GeneralizedHamiltonian {
     if constexpr (kIsJet<T>) {
       T result;
       result.a = scaled(x.a, factor);
-      for (int i = 0; i < T::DIMENSION; ++i) result.v[i] = scaled(x.v[i], factor);
+      for (int i = 0; i < T::kDirections; ++i) result.v[i] = scaled(x.v[i], factor);
       return result;
     } else {
       return T(factor) * x;
