@@ -108,52 +108,79 @@ LagrangianSlopes<T, Scene::kDof, Scene::kMultipliers> lagrangian_slopes(
 }
 
 // Gradient and, unless null, Hessian of the discrete Lagrangian F_d(q0, q1, lambda) = h l(qm, v)
-// with respect to x = (q0, q1, lambda), m = 2n + k. The chain rule with d qm = (dq0 + dq1)/2 and
-// d v = (dq1 - dq0)/h.
+// with respect to x = (q0, q1, lambda), which has m = 2n + k entries; the Hessian is m x m. The
+// chain rule with d qm = (dq0 + dq1)/2 and d v = (dq1 - dq0)/h:
+//
+//   gradient   (h l_q/2 - l_v,  h l_q/2 + l_v,  -h g)
+//   Hessian    in (q0, q0)  h l_qq/4 - (l_vq + l_vq')/2 + l_vv/h
+//              in (q1, q1)  h l_qq/4 + (l_vq + l_vq')/2 + l_vv/h
+//              in (q0, q1)  h l_qq/4 + (l_vq' - l_vq)/2 - l_vv/h
+//              in (lambda, q0) and (lambda, q1)   -h g_q/2 +- G,     in (lambda, lambda)  -h P
+//
+// Written in loops: Eigen's blocks of this would take a scene a fifth of its time to compile.
 template <class Scene>
-void discrete_lagrangian(
-    const VelocityConstraints<Scene>& system,
-    double h,
-    const Vector<double, 2 * Scene::kDof + Scene::kMultipliers>& x,
-    Vector<double, 2 * Scene::kDof + Scene::kMultipliers>& gradient_out,
-    Matrix<double, 2 * Scene::kDof + Scene::kMultipliers, 2 * Scene::kDof + Scene::kMultipliers>*
-        hessian) {
+void discrete_lagrangian(const VelocityConstraints<Scene>& system,
+                         double h,
+                         const double* x,
+                         double* gradient,
+                         double* hessian) {
   constexpr int n = Scene::kDof;
   constexpr int k = Scene::kMultipliers;
-  const Vector<double, n> q0 = x.template head<n>();
-  const Vector<double, n> q1 = x.template segment<n>(n);
-  const Vector<double, n> qm = 0.5 * (q0 + q1);
-  const Vector<double, n> v = (q1 - q0) / h;
-  const Vector<double, k> lambda = x.template tail<k>();
-  const auto write_gradient = [&](const auto& l_q, const auto& l_v, const auto& g) {
-    gradient_out << 0.5 * h * l_q - l_v, 0.5 * h * l_q + l_v, -h * g;
+  constexpr int m = 2 * n + k;
+  Vector<double, n> qm;
+  Vector<double, n> v;
+  Vector<double, k> lambda;
+  for (int i = 0; i < n; ++i) {
+    qm[i] = 0.5 * (x[i] + x[n + i]);
+    v[i] = (x[n + i] - x[i]) / h;
+  }
+  for (int i = 0; i < k; ++i) lambda[i] = x[2 * n + i];
+  const auto write_gradient = [&](const auto& l) {
+    for (int i = 0; i < n; ++i) {
+      gradient[i] = 0.5 * h * value_of(l.l_q[i]) - value_of(l.l_v[i]);
+      gradient[n + i] = 0.5 * h * value_of(l.l_q[i]) + value_of(l.l_v[i]);
+    }
+    for (int i = 0; i < k; ++i) gradient[2 * n + i] = -h * value_of(l.g[i]);
   };
   if (hessian == nullptr) {
-    const auto l = lagrangian_slopes(system, qm, v, lambda);
-    write_gradient(l.l_q, l.l_v, l.g);
+    write_gradient(lagrangian_slopes(system, qm, v, lambda));
     return;
   }
   const auto l = lagrangian_slopes(system, seeded(qm), v, lambda);
-  write_gradient(primal(l.l_q), primal(l.l_v), primal(l.g));
-  const Matrix<double, n, n> l_vq = tangents(l.l_v);
-  const Matrix<double, k, n> g_q = tangents(l.g);
-  const Matrix<double, k, n> g_v = system.scene().constraints(qm);  // G
-  const Matrix<double, n, n> symmetric = 0.5 * (l_vq + l_vq.transpose());
-  const Matrix<double, n, n> skew = 0.5 * (l_vq.transpose() - l_vq);
-  const Matrix<double, n, n> position = 0.25 * h * tangents(l.l_q);
-  const Matrix<double, n, n> velocity = system.scene().mass(qm) / h;
-  hessian->setZero();
-  hessian->template block<n, n>(0, 0) = position - symmetric + velocity;
-  hessian->template block<n, n>(n, n) = position + symmetric + velocity;
-  hessian->template block<n, n>(0, n) = position + skew - velocity;
-  hessian->template block<n, n>(n, 0) = hessian->template block<n, n>(0, n).transpose();
-  hessian->template block<k, n>(2 * n, 0) = g_v - 0.5 * h * g_q;
-  hessian->template block<k, n>(2 * n, n) = -g_v - 0.5 * h * g_q;
-  if constexpr (HasGauge<Scene>) {
-    hessian->template bottomRightCorner<k, k>() = -h * system.scene().gauge(qm);
+  write_gradient(l);
+  // Entry (row, column) and its mirror image.
+  const auto set = [&](int row, int column, double value) {
+    hessian[column * m + row] = hessian[row * m + column] = value;
+  };
+  const Matrix<double, n, n> mass = system.scene().mass(qm);
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      const double position = 0.25 * h * l.l_q[i].v[j];
+      const double velocity = mass(i, j) / h;
+      const double symmetric = 0.5 * (l.l_v[i].v[j] + l.l_v[j].v[i]);
+      const double skew = 0.5 * (l.l_v[j].v[i] - l.l_v[i].v[j]);
+      hessian[j * m + i] = position - symmetric + velocity;
+      hessian[(n + j) * m + n + i] = position + symmetric + velocity;
+      set(i, n + j, position + skew - velocity);
+    }
   }
-  hessian->template topRightCorner<2 * n, k>() =
-      hessian->template bottomLeftCorner<k, 2 * n>().transpose();
+  if constexpr (k > 0) {
+    const Matrix<double, k, n> rows = system.scene().constraints(qm);
+    for (int i = 0; i < k; ++i) {
+      for (int j = 0; j < n; ++j) {
+        const double position = 0.5 * h * l.g[i].v[j];
+        set(2 * n + i, j, rows(i, j) - position);
+        set(2 * n + i, n + j, -rows(i, j) - position);
+      }
+      for (int j = 0; j < k; ++j) hessian[(2 * n + i) * m + 2 * n + j] = 0;
+    }
+  }
+  if constexpr (HasGauge<Scene>) {
+    const Matrix<double, k, k> gauge = system.scene().gauge(qm);
+    for (int i = 0; i < k; ++i) {
+      for (int j = 0; j < k; ++j) hessian[(2 * n + j) * m + 2 * n + i] = -h * gauge(i, j);
+    }
+  }
 }
 
 }  // namespace carnot

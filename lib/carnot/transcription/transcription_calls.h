@@ -50,12 +50,11 @@ bool midpoint(
     for (int j = first; j < n; ++j) sum += value_of(matrix(row, j)) * v[j];
     terms[to] = sum;
     if constexpr (kIsJet<typename std::decay_t<decltype(matrix)>::Scalar>) {
-      auto by_q = view<n>(jacobian + to * 2 * n);
-      auto by_v = view<n>(jacobian + to * 2 * n + n);
-      by_q.setZero();
-      by_v.setZero();
+      double* const by_q = jacobian + to * 2 * n;
+      double* const by_v = by_q + n;
+      for (int i = 0; i < 2 * n; ++i) by_q[i] = 0;
       for (int j = first; j < n; ++j) {
-        by_q += v[j] * matrix(row, j).v;
+        for (int i = 0; i < n; ++i) by_q[i] += v[j] * matrix(row, j).v[i];
         by_v[j] = matrix(row, j).a;
       }
     }
@@ -74,22 +73,18 @@ bool midpoint(
   MidpointFactors<Jet<double, n>, n, k> factors;
   if (!midpoint_factors(system, seeded(qm), factors)) return false;
   write(factors);
-  view<n>(jacobian + (n + k) * 2 * n) = factors.potential.v;
-  view<n>(jacobian + (n + k) * 2 * n + n).setZero();
+  double* const last = jacobian + (n + k) * 2 * n;
+  for (int i = 0; i < n; ++i) {
+    last[i] = factors.potential.v[i];
+    last[n + i] = 0;
+  }
   return true;
 }
 
 template <class B>
 void discrete_lagrangian(
-    const void* opaque, double h, const double* x_in, double* gradient_out, double* hessian) {
-  constexpr int m = 2 * B::n + kTranscribed<B>;
-  const auto& system = transcription(B::from(opaque).system);
-  const Vector<double, m> x = view<m>(x_in);
-  Vector<double, m> slope;
-  Matrix<double, m, m> second;
-  carnot::discrete_lagrangian(system, h, x, slope, hessian != nullptr ? &second : nullptr);
-  view<m>(gradient_out) = slope;
-  if (hessian != nullptr) view<m * m>(hessian) = view<m * m>(second.data());
+    const void* opaque, double h, const double* x, double* gradient, double* hessian) {
+  carnot::discrete_lagrangian(transcription(B::from(opaque).system), h, x, gradient, hessian);
 }
 
 // lambda of p = M v - G'lambda. With dependent rows that are a projector C, C lambda = -C p.
