@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "carnot/dynamics.h"
-#include "carnot/flow/inlined_kernel.h"
 #include "carnot/flow/make_kernel.h"
 #include "carnot/system/system_calls.h"
 #include "carnot/system/system_of.h"
@@ -193,35 +192,39 @@ const Method& method_for(const Scene& scene, std::string_view name) {
   return *method;
 }
 
+// A Dynamics whose method runs in a kernel of the library.
+template <class Scene>
+Dynamics with_compiled_kernel(const Scene& scene, const Method& method) {
+  using System = decltype(make_system(scene));
+  Dynamics dynamics = bind(scene, method, SystemOnBranch<System>{make_system(scene)});
+  dynamics.kernel = make_kernel(method, periods_of(dynamics.info), functions_of<System>());
+  return dynamics;
+}
+
 }  // namespace dynamics_calls
+
+// Whether a kernel of the library serves the scene.
+template <class Scene>
+inline constexpr bool kHasCompiledKernel = [] {
+  using System = decltype(make_system(std::declval<const Scene&>()));
+  return System::kDof <= kMostCompiled && kFitsKernel<System>;
+}();
 
 // A Dynamics of the scene with a method of methods.h. Throws std::invalid_argument when a parameter
 // of the scene is out of its range, or there is no such method for it.
 //
 // The method runs in a kernel that was compiled with the library, and reaches the scene through
-// function pointers; so a scene compiles in seconds. make_inlined_dynamics.h makes a kernel that
-// knows the scene. RATTLE, and more than kMostCompiled coordinates, have such a kernel always.
+// function pointers; so a scene compiles in seconds. Where there is no such kernel, two headers
+// beside this one make a kernel for the scene.
 template <class Scene>
 Dynamics make_dynamics(const Scene& scene, std::string_view name = default_method<Scene>()) {
   using namespace dynamics_calls;
-  using System = decltype(make_system(scene));
-  const Method& method = method_for(scene, name);
-  Dynamics dynamics = bind(scene, method, SystemOnBranch<System>{make_system(scene)});
-  const std::vector<double> periods = periods_of(dynamics.info);
-  if constexpr (HasHolonomic<Scene>) {
-    if (method.family == kRattleFamily) {
-      dynamics.kernel = make_rattle_kernel<System>(method, periods);
-      return dynamics;
-    }
-  }
-  if constexpr (!kNeedsRattle<Scene>) {
-    if constexpr (System::kDof <= kMostCompiled && kFitsKernel<System>) {
-      dynamics.kernel = make_kernel(method, periods, functions_of<System>());
-    } else {
-      dynamics.kernel = make_inlined_kernel<System>(method, periods);
-    }
-  }
-  return dynamics;
+  static_assert(!HasHolonomic<Scene>,
+                "holonomic constraints: make_rattle_dynamics() of <carnot/make_rattle_dynamics.h>");
+  static_assert(kHasCompiledKernel<Scene>,
+                "more coordinates than kMostCompiled: make_inlined_dynamics() of "
+                "<carnot/make_inlined_dynamics.h>");
+  return with_compiled_kernel(scene, method_for(scene, name));
 }
 
 }  // namespace carnot

@@ -1,28 +1,25 @@
-// Dynamics whose default method knows its scene. What that is worth depends on the scene, see
-// erased_system.h; the scene takes several times as long to compile.
+// Dynamics whose kernel knows its scene, whatever the number of coordinates.
 #pragma once
 
 #include <string_view>
-#include <vector>
 
 #include "carnot/flow/inlined_kernel.h"
 #include "carnot/make_dynamics.h"
 
 namespace carnot {
 
-// The same as make_dynamics(), with a kernel of its own where the method is gauss16.
+// As make_dynamics(), with a kernel that is compiled with the scene, which takes several times as
+// long. What that is worth below kMostCompiled coordinates depends on the scene (erased_system.h).
 template <class Scene>
 Dynamics make_inlined_dynamics(const Scene& scene,
                                std::string_view name = default_method<Scene>()) {
+  using namespace dynamics_calls;
+  static_assert(!HasHolonomic<Scene>,
+                "holonomic constraints: make_rattle_dynamics() of <carnot/make_rattle_dynamics.h>");
   using System = decltype(make_system(scene));
-  Dynamics dynamics = make_dynamics(scene, name);
-  const Method& method = dynamics_calls::method_for(scene, name);
-  if constexpr (!kNeedsRattle<Scene>) {
-    if (has_fixed_kernel(method)) {
-      dynamics.kernel =
-          make_fixed_kernel<System>(method, dynamics_calls::periods_of(dynamics.info));
-    }
-  }
+  const Method& method = method_for(scene, name);
+  Dynamics dynamics = bind(scene, method, SystemOnBranch<System>{make_system(scene)});
+  dynamics.kernel = make_inlined_kernel<System>(method, periods_of(dynamics.info));
   return dynamics;
 }
 

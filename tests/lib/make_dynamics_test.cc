@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "carnot/flow/tangent_flow.h"
 #include "carnot/scenes/unicycle.h"
 #include "carnot/scenes/vehicle.h"
 #include "carnot/scenes/vehicle_cosine.h"

@@ -184,7 +184,7 @@ struct Chain {
 };
 
 TEST(MakeKernelSize, MoreCoordinatesHaveAKernelOfTheirOwn) {
-  const Dynamics dynamics = make_dynamics(Chain{});
+  const Dynamics dynamics = make_inlined_dynamics(Chain{});
   std::vector<double> z(2 * Chain::kDof, 0.0);
   z.back() = 1;  // the control, constant
   ASSERT_TRUE(dynamics.flow(StepPlan::equal(0, 1, 2), z.data()).completed());

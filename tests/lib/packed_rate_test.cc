@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "carnot/step/gauss.h"
-#include "testing/more_scenes.h"
+#include "testing/charted_scenes.h"
 #include "testing/runs.h"
 #include "testing/scene_wrappers.h"
 

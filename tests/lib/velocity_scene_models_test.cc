@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "testing/attitude.h"
-#include "testing/more_scenes.h"
+#include "testing/charted_scenes.h"
 
 namespace carnot::velocity_scene_models_test {
 namespace {

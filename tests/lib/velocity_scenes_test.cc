@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "testing/more_scenes.h"
+#include "testing/charted_scenes.h"
 #include "testing/scene_wrappers.h"
 
 namespace carnot::velocity_scenes_test {
@@ -89,7 +89,7 @@ class VelocityScenesTest : public ::testing::Test {
   const SceneInfo info_ = scene_.info();
   std::vector<Point> points_;
 };
-TYPED_TEST_SUITE(VelocityScenesTest, test::MoreScenes, test::SceneNames);
+TYPED_TEST_SUITE(VelocityScenesTest, test::ChartedScenes, test::SceneNames);
 
 TYPED_TEST(VelocityScenesTest, WriteFrameAndGradient) {
   static_assert(HasFrame<TypeParam> && HasFrameGradient<TypeParam>);

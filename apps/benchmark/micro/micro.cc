@@ -14,6 +14,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -142,6 +143,7 @@ void hand_pack_latency(benchmark::State& state, const BenchmarkTrajectory& traje
 template <class Scene>
 void iteration_latency(benchmark::State& state, const BenchmarkTrajectory& trajectory) {
   constexpr double kStep = 0.3;
+  constexpr double kAnyChange = std::numeric_limits<double>::max();
   constexpr int kSize = 2 * Scene::kDof;
   const auto system = make_system(Scene{});
   using System = std::decay_t<decltype(system)>;
@@ -154,17 +156,17 @@ void iteration_latency(benchmark::State& state, const BenchmarkTrajectory& traje
   alignas(64) std::array<double, System::kAlgebraic * 8> y;
   for (int i = 0; i < 8; ++i) weights[i] = kStep * tableau.omega[i];
   for (auto _ : state) {
-    const Sweep sweep = packed_sweep<8>(system,
-                                        {time.data(),
-                                         tableau.mu.data(),
-                                         weights.data(),
-                                         start.data(),
-                                         compensation.data(),
-                                         rows.z.data(),
-                                         y.data(),
-                                         rows.f.data(),
-                                         nullptr});
-    if (!sweep.ok) state.SkipWithError("no rate");
+    const StageReport sweep = packed_iteration<8>(system,
+                                                  {time.data(),
+                                                   tableau.mu.data(),
+                                                   weights.data(),
+                                                   start.data(),
+                                                   compensation.data(),
+                                                   rows.z.data(),
+                                                   y.data(),
+                                                   rows.f.data()},
+                                                  {kAnyChange, 1, false});
+    if (sweep.end == IterationEnd::kRateFailed) state.SkipWithError("no rate");
   }
   benchmark::DoNotOptimize(rows.f.data());
 }

@@ -19,6 +19,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 
@@ -35,16 +36,21 @@ inline constexpr int kLeastSampled = 4;
 template <class Stepper>
 typename Stepper::Scalar step_error(const Stepper& step) {
   using T = typename Stepper::Scalar;
-  constexpr int kStages = Stepper::Stages::ColsAtCompileTime;
   const auto& tableau = step.tableau();
   const int s = tableau.stages();
-  StageVector<T, kStages> size(s);
+  std::array<T, Stepper::kMaxStages> size;
   if constexpr (Stepper::kRows) {
-    packed_sizes<Stepper::kSize, kStages>(
+    packed_sizes<Stepper::kSize, Stepper::kMaxStages>(
         tableau.legendre.data(), step.increments().data(), size.data());
   } else {
-    size =
-        tableau.legendre.lazyProduct(step.increments().transpose()).cwiseAbs().rowwise().maxCoeff();
+    for (int i = 0; i < s; ++i) {
+      size[i] = T(0);
+      for (int k = 0; k < Stepper::kSize; ++k) {
+        T sum(0);
+        for (int j = 0; j < s; ++j) sum += tableau.legendre(i, j) * step.increments()(k, j);
+        size[i] = std::max(size[i], std::abs(sum));
+      }
+    }
   }
   const int first = std::max(0, s - 6);
   const T low = std::max(size[first], size[first + 1]);

@@ -20,16 +20,23 @@ namespace carnot {
 
 namespace dop853 {
 
-// row k of `to` <- row k of z + h sum_j w_j (row k of f_j).
-template <const Weights& w, int size, int W>
-[[gnu::flatten, gnu::noinline]] void combine(const double* z,
-                                             double h,
-                                             const double* f,
-                                             double* to) {
-  using P = Pack<W>;
+// Row k of sum_j w_j f_j, over the weights that do not vanish.
+template <int size, int W>
+[[gnu::always_inline]] inline Pack<W> weighted_row(const Weights& w, const double* f, int k) {
+  Pack<W> sum(0);
+  for (int j = 0; j < kStages; ++j) {
+    if (w[j] != 0) sum += Pack<W>(w[j]) * Pack<W>::load(f + (j * size + k) * W);
+  }
+  return sum;
+}
+
+// Row k of `to` <- row k of z + h sum_j w_j f_j.
+template <int size, int W>
+[[gnu::flatten, gnu::noinline]] void combine(
+    const Weights& w, const double* z, double h, const double* f, double* to) {
   for (int k = 0; k < size; ++k) {
-    const P sum = weighted<w>(P(0), [&](int j) { return P::load(f + (j * size + k) * W); });
-    (P::load(z + k * W) + P(h) * sum).store(to + k * W);
+    const Pack<W> sum = weighted_row<size, W>(w, f, k);
+    (Pack<W>::load(z + k * W) + Pack<W>(h) * sum).store(to + k * W);
   }
 }
 
@@ -42,10 +49,9 @@ template <int size, int W>
   P fifth_square(0);
   P third_square(0);
   for (int i = 0; i < size; ++i) {
-    const auto rate = [&](int j) { return P::load(f + (j * size + i) * W); };
     const P scale = P(tolerance) * (P(1) + max(abs(P::load(z + i * W)), abs(P::load(end + i * W))));
-    const P fifth_ratio = weighted<kError5>(P(0), rate) / scale;
-    const P third_ratio = weighted<kError3>(P(0), rate) / scale;
+    const P fifth_ratio = weighted_row<size, W>(kError5, f, i) / scale;
+    const P third_ratio = weighted_row<size, W>(kError3, f, i) / scale;
     fifth_square += fifth_ratio * fifth_ratio;
     third_square += third_ratio * third_ratio;
   }
@@ -106,15 +112,13 @@ AdaptiveReport dop853_adaptive(
     const double step = sign * (last ? left : h);
     const double t = start + duration - sign * left;
     bool ok = true;
-    const auto stages = [&]<int... i>(std::integer_sequence<int, i...>) {
-      ((combine<kA[i + 1], size, W>(z, step, f.data(), stage.data()),
-        ok = ok && rate(t + kTableau.c[i + 1] * step, stage.data(), i + 1)),
-       ...);
-    };
-    stages(std::make_integer_sequence<int, kStages - 1>{});
+    for (int i = 1; i < kStages && ok; ++i) {
+      combine<size, W>(kA[i], z, step, f.data(), stage.data());
+      ok = rate(t + kTableau.c[i] * step, stage.data(), i);
+    }
     double ratio = INFINITY;
     if (ok) {
-      combine<kA[kStages], size, W>(z, step, f.data(), stage.data());
+      combine<size, W>(kA[kStages], z, step, f.data(), stage.data());
       ratio = error_ratio<size, W>(z, stage.data(), step, tolerance, f.data());
     }
     const double growth =

@@ -202,11 +202,13 @@ inline bool is_gauss(const Tableau<double>& tableau) {
          tableau.order == 2 * tableau.stages();
 }
 
-// Stages of the default method, whose kernel knows their number.
-inline constexpr int kFixed = 8;
+// Stages of one pack. Methods with as many stages, or fewer, run in a kernel that keeps them side
+// by side: the default method, gauss16, fills it. One stage alone would waste the others.
+inline constexpr int kRowStages = 8;
 
-inline bool has_fixed_stages(const Tableau<double>& tableau) {
-  return tableau.coupling == Coupling::kFull && !tableau.partitioned && tableau.stages() == kFixed;
+inline bool fits_in_rows(const Tableau<double>& tableau) {
+  return tableau.coupling == Coupling::kFull && !tableau.partitioned && tableau.stages() > 1 &&
+         tableau.stages() <= kRowStages;
 }
 
 template <class M>
@@ -227,11 +229,13 @@ Kernel make_erased_kernel(const Tableau<double>& tableau,
   using namespace kernel;
   using System = ErasedSystem<n>;
   Kernel kernel;
-  if (has_fixed_stages(tableau)) {
-    using M = Erased<RungeKutta<System, kFixed>>;
-    kernel = kernel_of(M{fixed_stages<kFixed>(tableau), winding_of<n>(periods), &functions});
+  if (fits_in_rows(tableau)) {
+    using M = Erased<RungeKutta<System, kRowStages>>;
+    kernel = kernel_of(M{fixed_stages<kRowStages>(tableau), winding_of<n>(periods), &functions});
     add_automatic_flow<M>(tableau, kernel);
-    if (functions.packs) kernel.calls.adaptive_batch = adaptive_batch<M>;
+    if (functions.packs && tableau.stages() == kRowStages) {
+      kernel.calls.adaptive_batch = adaptive_batch<M>;
+    }
     return kernel;
   }
   using M = Erased<RungeKutta<System>>;

@@ -2,13 +2,17 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 
 #include "carnot/step/runge_kutta.h"
 #include "carnot/system/measures.h"
 
 namespace carnot {
+
+// Its stages lie in rows of kErasedLanes.
+template <class Stepper>
+concept HasRows = Stepper::kRows;
 
 // Observer of flow(). The integrals use the method's own quadrature at its stages, so they have
 // its order. L = p.q' - H on admissible velocities.
@@ -16,82 +20,111 @@ template <class Stepper>
 class Monitor {
  public:
   using System = typename Stepper::System;
-  using T = typename Stepper::Scalar;
   static constexpr int n = Stepper::kDof;
+  static constexpr int m = System::kAlgebraic;
 
   // Takes H at the first node as reference.
-  Monitor(const System& system, const T& t, const Stepper& step, const State<T, n>& z)
+  Monitor(const System& system, double t, const Stepper& step, const State<double, n>& z)
       : system_(system), y_(step.branch()) {
     initial_ = node(t, z);
-    energy_drift_ = energy_balance_ = T(0);
+    energy_drift_ = energy_balance_ = 0;
   }
 
-  void operator()(const T& t, const Stepper& step, const State<T, n>& z) {
-    const T h = step.last_step();
-    for (int i = 0; i < step.tableau().stages(); ++i) {
-      const T weight = h * step.tableau().b[i];
-      const Vector<T, n> q = step.stages().col(i).template head<n>();
-      const Vector<T, n> p = step.stages().col(i).template tail<n>();
-      const Vector<T, n> v =
-          step.increments().col(i).template head<n>() / (h * step.tableau().omega[i]);
-      constraint_error_ = std::max(constraint_error_, relative_constraint(q, v));
-      if (weight == T(0)) continue;
-      const T time = step.stage_time(i);
-      const Vector<T, System::kAlgebraic> y = step.algebraic(i);
-      action_.add(weight * (p.dot(v) - system_.hamiltonian(time, q, p, y)));
-      // Substeps of a composition may go backwards: b_i < 0.
-      length_.add(std::abs(h) * step.tableau().b[i] * system_.speed(q, v));
-      if (!is_autonomous(system_)) power_.add(weight * explicit_rate(system_, time, q, p, y));
+  void operator()(double t, const Stepper& step, const State<double, n>& z) {
+    const double h = step.last_step();
+    const auto& tableau = step.tableau();
+    for (int first = 0; first < tableau.stages(); first += kTogether) {
+      const int count = std::min(kTogether, tableau.stages() - first);
+      measure(step, first, count);
+      for (int l = 0; l < count; ++l) {
+        const PointMeasures& at = measures_[l];
+        const double b = tableau.b[first + l];
+        constraint_error_ = std::max(constraint_error_, at.constraint);
+        if (b == 0) continue;
+        action_.add(h * b * at.lagrangian);
+        // Substeps of a composition may go backwards: b_i < 0.
+        length_.add(std::abs(h) * b * at.speed);
+        power_.add(h * b * at.power);
+      }
     }
     y_ = step.branch();
-    const T change = node(t, z) - initial_;
+    const double change = node(t, z) - initial_;
     raise(energy_drift_, std::abs(change));
     raise(energy_balance_, std::abs(change - power_.value));
   }
 
-  [[nodiscard]] T action() const { return action_.value; }
-  [[nodiscard]] T length() const { return length_.value; }
+  [[nodiscard]] double action() const { return action_.value; }
+  [[nodiscard]] double length() const { return length_.value; }
   // max |H - H_0| over the nodes.
-  [[nodiscard]] T energy_drift() const { return energy_drift_; }
+  [[nodiscard]] double energy_drift() const { return energy_drift_; }
   // max |H - H_0 - integral of H_t|: the same for a system that does not depend on time.
-  [[nodiscard]] T energy_balance() const { return energy_balance_; }
+  [[nodiscard]] double energy_balance() const { return energy_balance_; }
   // max |g(q, q')| / max(1, |q'|) over stages and nodes.
-  [[nodiscard]] T constraint_error() const { return constraint_error_; }
+  [[nodiscard]] double constraint_error() const { return constraint_error_; }
   // max of |h(q)| and |Dh q'| / max(1, |q'|) over the nodes.
-  [[nodiscard]] T holonomic_error() const { return holonomic_error_; }
+  [[nodiscard]] double holonomic_error() const { return holonomic_error_; }
 
  private:
-  static void raise(T& largest, const T& value) {
+  static void raise(double& largest, double value) {
     if (!(value <= largest)) largest = value;  // a NaN stays
   }
 
-  // H at a node; its constraints are measured too.
-  T node(const T& t, const State<T, n>& z) {
-    const Vector<T, n> q = z.value.template head<n>();
-    const Vector<T, n> p = z.value.template tail<n>();
-    Rate<T, n> rate;
-    if (system_.rate(t, q, p, y_, rate) != RateStatus::kOk) {
-      return std::numeric_limits<T>::quiet_NaN();
+  static constexpr int kTogether = kErasedLanes;
+
+  // Stages first, ..., first + count - 1.
+  void measure(const Stepper& step, int first, int count) {
+    std::array<double, kTogether> time;
+    std::array<double, kTogether> weights;
+    for (int l = 0; l < count; ++l) {
+      time[l] = step.stage_time(first + l);
+      weights[l] = step.last_step() * step.tableau().omega[first + l];
     }
-    constraint_error_ = std::max(constraint_error_, relative_constraint(q, rate.q_dot));
-    holonomic_error_ = std::max(holonomic_error_, carnot::holonomic_error(system_, q, rate.q_dot));
-    return system_.hamiltonian(t, q, p, y_);
+    const auto at = [&](const double* z, const double* dq, const double* y) {
+      measure_points(system_, count, time.data(), weights.data(), z, dq, y, measures_.data());
+    };
+    if constexpr (HasRows<Stepper>) {
+      at(step.stages().data(), step.increments().data(), step.algebraic().data());
+    } else {
+      std::array<double, kTogether * 2 * n> z;
+      std::array<double, kTogether * n> dq;
+      std::array<double, kTogether * m> y;
+      int used = m;
+      if constexpr (IsErased<System>) used = system_.algebraic_count();
+      for (int l = 0; l < count; ++l) {
+        for (int k = 0; k < 2 * n; ++k) z[k * kTogether + l] = step.stages()(k, first + l);
+        for (int k = 0; k < n; ++k) dq[k * kTogether + l] = step.increments()(k, first + l);
+        const Vector<double, m> solution = step.algebraic(first + l);
+        for (int k = 0; k < used; ++k) y[k * kTogether + l] = solution[k];
+      }
+      at(z.data(), dq.data(), y.data());
+    }
   }
 
-  T relative_constraint(const Vector<T, n>& q, const Vector<T, n>& v) const {
-    return constraint_norm(system_, q, v) / std::max(T(1), v.cwiseAbs().maxCoeff());
+  // H at a node; its constraints are measured too.
+  double node(double t, const State<double, n>& z) {
+    NodeMeasures at;
+    if constexpr (IsErased<System>) {
+      at = system_.measure_node(t, z.value, y_);
+    } else {
+      at = measure_node<System>(
+          system_, t, z.value.template head<n>(), z.value.template tail<n>(), y_);
+    }
+    constraint_error_ = std::max(constraint_error_, at.constraint);
+    holonomic_error_ = std::max(holonomic_error_, at.holonomic);
+    return at.hamiltonian;
   }
 
   const System& system_;
-  Vector<T, System::kAlgebraic> y_;
-  Compensated<T> action_{T(0), T(0)};
-  Compensated<T> length_{T(0), T(0)};
-  Compensated<T> power_{T(0), T(0)};
-  T initial_ = T(0);
-  T energy_drift_ = T(0);
-  T energy_balance_ = T(0);
-  T constraint_error_ = T(0);
-  T holonomic_error_ = T(0);
+  Vector<double, m> y_;
+  std::array<PointMeasures, kTogether> measures_;
+  Compensated<double> action_{0, 0};
+  Compensated<double> length_{0, 0};
+  Compensated<double> power_{0, 0};
+  double initial_ = 0;
+  double energy_drift_ = 0;
+  double energy_balance_ = 0;
+  double constraint_error_ = 0;
+  double holonomic_error_ = 0;
 };
 
 }  // namespace carnot

@@ -109,10 +109,10 @@ inline constexpr double kLargestAngle = 1e6;
 // parts whose products with n are exact (Cody & Waite 1980), and polynomials in r^2 follow,
 // evaluated in pairs so that the chain is short. The quadrant n mod 4 swaps them and sets signs.
 //
-// Errors far below an ulp matter where they are the same on every turn of an angle, for H drifts by
-// them: by 1e-18 of itself and turn, if r is rounded to double. So `rest`, what that rounding
-// leaves, is carried along, and the polynomials are good to 5e-20: least squares on [0, (pi/4)^2]
-// in 60 digits, each coefficient rounded before the next one is found.
+// Errors far below an ulp matter where they are the same on every turn of an angle, because H then
+// drifts by them: with r rounded to double, by 1e-18 of H in each turn. So `rest`, which is what
+// that rounding leaves, is carried along, and the polynomials are good to 5e-20: least squares on
+// [0, (pi/4)^2] in 60 digits, each coefficient rounded before the next one is found.
 template <class Lane>
 [[gnu::always_inline]] inline SinCos<Lane> sin_cos(const Lane& x) {
   if constexpr (std::is_same_v<Lane, double>) {

@@ -36,7 +36,7 @@ class PseudoInverse {
     }
     const T round_off = T(rows + cols) * epsilon<T>();
     for (int j = 0; j < cols; ++j) {
-      // Written so that a NaN counts and comes out in the solution.
+      // A NaN is kept, so that the solution shows it.
       if (!(square_[j] > round_off * round_off * largest) && square_[j] == square_[j]) {
         square_[j] = T(0);
       }

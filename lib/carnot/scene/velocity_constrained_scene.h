@@ -59,11 +59,12 @@ concept HasHolonomic = requires(const S& scene, const Vector<double, S::kDof>& q
   { scene.holonomic(q) } -> std::convertible_to<Vector<double, S::kHolonomic>>;
 };
 
-// The scene says that off h(q) = 0 it goes on as a product, a metric without potential: h is a
-// function of coordinates that move like a free particle, apart from the others. So a motion that
-// starts with h = 0 and Dh q' = 0 keeps both without forces, a geodesic of the whole space between
-// points of the manifold stays on it and is conjugate where it is on the manifold, and a method
-// that keeps quadratic invariants keeps a quadratic h to round-off.
+// The scene says that its formulas also mean something where h(q) is not zero, and that they make
+// the whole space a product: a metric without potential in which h is a function of coordinates
+// that move like a free particle, apart from the others. So a motion that starts with h = 0 and Dh
+// q' = 0 keeps both without forces, a geodesic of the whole space between points of the manifold
+// stays on it and is conjugate where it is on the manifold, and a method that keeps quadratic
+// invariants keeps a quadratic h to round-off.
 template <class S>
 concept IsProduct = HasHolonomic<S> && S::kProduct;
 

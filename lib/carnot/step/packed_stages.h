@@ -5,7 +5,7 @@
 
 #include "carnot/numerics/linear_algebra.h"
 #include "carnot/numerics/pack.h"
-#include "carnot/system/packed_sweep.h"
+#include "carnot/system/packed_iteration.h"
 
 namespace carnot {
 
@@ -54,6 +54,7 @@ template <int size, int s>
   for (int c = 0; c < size; ++c) {
     double* const column = increments + c * size * s;
     std::array<P, size> argument;
+#pragma GCC unroll 16
     for (int k = 0; k < size; ++k) {
       argument[k] =
           P(dz[c * size + k]) + combination<s>(mu, column + k * s, P(compensation[c * size + k]));
@@ -62,6 +63,7 @@ template <int size, int s>
       const double* const row = jacobian + r * size * s;
       P even = P::load(row) * argument[0];
       P odd = P::load(row + s) * argument[1];
+#pragma GCC unroll 8
       for (int k = 2; k < size; k += 2) {
         even += P::load(row + k * s) * argument[k];
         odd += P::load(row + (k + 1) * s) * argument[k + 1];

@@ -29,7 +29,7 @@
 #include "carnot/step/stage_equations.h"
 #include "carnot/step/stage_newton.h"
 #include "carnot/step/step_report.h"
-#include "carnot/step/stopping_rule.h"
+#include "carnot/system/packed_iteration.h"
 #include "carnot/system/packed_rate.h"
 #include "carnot/system/phase_space.h"
 #include "carnot/tableau/tableau.h"
@@ -48,7 +48,8 @@ class RungeKutta {
   static constexpr int kMaxCoupled = s == kAnyStages ? kMostCoupledStages : s;
   static constexpr int kLanes = 8;
   static constexpr bool kPacks = PacksRates<System> && std::is_same_v<T, double>;
-  static constexpr bool kRows = kPacks && s == kLanes;  // stages lie in memory as packs do
+  // Stages lie in memory as packs do. Those that are idle stay at the start of the step.
+  static constexpr bool kRows = kPacks && s == kLanes;
   using Point = Vector<T, kSize>;
   using Algebraic = Vector<T, System::kAlgebraic>;
   using Stages = StageRows<T, kSize, s, kMaxStages>;  // a column each
@@ -58,9 +59,9 @@ class RungeKutta {
       : system_(system), tableau_(tableau) {
     assert(tableau.coupling == Coupling::kFull || (s == kAnyStages && !tableau.partitioned));
     assert(tableau.stages() <= (coupled() ? kMaxCoupled : kMaxStages));
-    stages_ = Stages::Zero(kSize, tableau.stages());
+    stages_ = Stages::Zero(kSize, tableau.c.size());
     increments_ = stages_;
-    algebraic_.resize(System::kAlgebraic, tableau.stages());
+    algebraic_.resize(System::kAlgebraic, tableau.c.size());
     start_on(Algebraic::Zero());
   }
   RungeKutta(const System& system, Tableau<T, s>&& tableau) = delete;  // would dangle
@@ -119,6 +120,7 @@ class RungeKutta {
   [[nodiscard]] const Stages& stages() const { return stages_; }
   [[nodiscard]] const Stages& increments() const { return increments_; }
   [[nodiscard]] Algebraic algebraic(int i) const { return algebraic_.col(i); }
+  [[nodiscard]] const auto& algebraic() const { return algebraic_; }
   [[nodiscard]] T stage_time(int i) const { return start_time_ + tableau_.c[i] * last_step_; }
   [[nodiscard]] T last_step() const { return last_step_; }
 
@@ -135,17 +137,16 @@ class RungeKutta {
     int first;
     int count;
 
-    [[nodiscard]] int begin() const { return s == kAnyStages ? first : 0; }
-    [[nodiscard]] int end() const { return s == kAnyStages ? first + count : s; }
-    // The columns of these stages, a fixed number where s is fixed.
-    template <class M>
-    [[nodiscard]] auto of(M& all) const {
-      return all.template middleCols<s>(begin(), end() - begin());
-    }
+    [[nodiscard]] int begin() const { return first; }
+    [[nodiscard]] int end() const { return first + count; }
   };
 
   [[nodiscard]] bool coupled() const {
     return s != kAnyStages || tableau_.coupling == Coupling::kFull;
+  }
+  static T abs_of(const T& x) {
+    using std::abs;
+    return abs(x);
   }
   static bool fail(RateStatus rate, StepReport& report) {
     report.status = StepStatus::kRateFailed;
@@ -269,34 +270,6 @@ class RungeKutta {
     return true;
   }
 
-  // One iteration: new stages, and the increments there. Largest change of a stage, NaN where a
-  // rate fails; `change` is that of each component, where it is asked for.
-  T sweep(const Block& block, Stages& next, Point* change, StepReport& report) {
-    if constexpr (kRows) {
-      const SweepData data{times_.data(),
-                           tableau_.mu.data(),
-                           weights_.data(),
-                           block.z.value.data(),
-                           block.z.compensation.data(),
-                           stages_.data(),
-                           algebraic_.data(),
-                           increments_.data(),
-                           change == nullptr ? nullptr : change->data()};
-      const Sweep sweep = packed_sweep<s>(system_, data);
-      report.evaluations += kLanes;
-      if (sweep.ok || (with_newton_ && evaluate_all(block, report))) return sweep.change;
-      if (!with_newton_) (void)fail(RateStatus::kNotFinite, report);
-      return std::numeric_limits<T>::quiet_NaN();
-    } else {
-      set_stages(block, next);
-      const Point moved = (block.of(next) - block.of(stages_)).cwiseAbs().rowwise().maxCoeff();
-      if (change != nullptr) *change = moved;
-      block.of(stages_) = block.of(next);
-      if (!evaluate_all(block, report)) return std::numeric_limits<T>::quiet_NaN();
-      return moved.maxCoeff();
-    }
-  }
-
   // Fixed point. True when the stages have settled.
   bool iterate(const Block& block, StepReport& report) {
     for (int i = 0; i < kSize; ++i) {
@@ -304,58 +277,61 @@ class RungeKutta {
         stages_(i, j) = std::numeric_limits<T>::max();
       }
     }
+    const IterationLimits<T> limits{stop_, most_iterations_, with_newton_};
     if constexpr (kRows) {
       for (int j = 0; j < s; ++j) {
         times_[j] = block.t + block.h * tableau_.c[j];
         weights_[j] = block.h * tableau_.omega[j];
       }
+      const StageData data{times_.data(),
+                           tableau_.mu.data(),
+                           weights_.data(),
+                           block.z.value.data(),
+                           block.z.compensation.data(),
+                           stages_.data(),
+                           algebraic_.data(),
+                           increments_.data()};
+      const StageReport done = packed_iteration<s>(system_, data, limits);
+      report.evaluations += tableau_.stages() * done.sweeps;
+      report.rate = RateStatus::kOk;
+      if (done.end != IterationEnd::kRateFailed) return done.end == IterationEnd::kSettled;
+      if (!with_newton_) return fail(RateStatus::kNotFinite, report);
+      // One by one, which tells the reason, or goes on where only the pack could not.
+      if (!evaluate_all(block, report)) return false;
     }
-    return stop_ > T(0) ? iterate_to_tolerance(block, report) : iterate_to_round_off(block, report);
+    return iterate_one_by_one(block, limits, report);
   }
 
-  // By the changes of two iterations: so slowly that Newton's method is faster.
-  bool contracts_poorly(int iteration, T change) {
-    constexpr int kJudged = 12;
-    constexpr T kPoor = T(0.02);  // 0.7 an iteration
-    if (iteration == 1) first_change_ = change;
-    return with_newton_ && iteration == kJudged && !(change <= kPoor * first_change_);
-  }
-
-  bool iterate_to_tolerance(const Block& block, StepReport& report) {
-    constexpr T kRunsAway = 4;  // changes that grow by this are not going to settle
+  bool iterate_one_by_one(const Block& block,
+                          const IterationLimits<T>& limits,
+                          StepReport& report) {
     Stages next = stages_;
-    T limit = std::numeric_limits<T>::infinity();
-    for (int iteration = 0; iteration < most_iterations_; ++iteration) {
-      const T change = sweep(block, next, nullptr, report);
-      if (!(change <= limit)) return false;
-      if (change <= stop_) return true;
-      if (iteration == 1) limit = kRunsAway * change;
-      if (contracts_poorly(iteration, change)) return false;
-    }
-    return false;
+    const auto sweep = [&](T* change) {
+      set_stages(block, next);
+      T most(0);
+      for (int i = 0; i < kSize; ++i) {
+        T moved(0);
+        for (int j = block.begin(); j < block.end(); ++j) {
+          const T away = abs_of(next(i, j) - stages_(i, j));
+          if (!(away <= moved)) moved = away;  // a NaN stays
+        }
+        if (change != nullptr) change[i] = moved;
+        if (!(moved <= most)) most = moved;
+      }
+      for (int j = block.begin(); j < block.end(); ++j) stages_.col(j) = next.col(j);
+      return evaluate_all(block, report) ? most : std::numeric_limits<T>::quiet_NaN();
+    };
+    return iterate_stages<T, kSize>(limits, sweep, [&] { return scale_of(block); }) ==
+           IterationEnd::kSettled;
   }
 
-  bool iterate_to_round_off(const Block& block, StepReport& report) {
-    using Rule = StoppingRule<T, kSize>;
-    Rule rule;
-    Stages next = stages_;
-    Point change;
-    for (int iteration = 0; iteration < most_iterations_; ++iteration) {
-      const T most = sweep(block, next, &change, report);
-      if (!(most >= T(0)) || contracts_poorly(iteration, most)) return false;
-      const auto verdict = rule(change);
-      if (verdict == Rule::Verdict::kAtRest) return true;
-      if (verdict == Rule::Verdict::kStalled) return settled(block, change);
+  // The largest entry of the stages.
+  [[nodiscard]] T scale_of(const Block& block) const {
+    T scale(0);
+    for (int j = block.begin(); j < block.end(); ++j) {
+      for (int i = 0; i < kSize; ++i) scale = std::max(scale, abs_of(stages_(i, j)));
     }
-    return false;
-  }
-
-  // Stalled changes must be round-off of the stages, else the iteration did not contract.
-  [[nodiscard]] bool settled(const Block& block, const Point& change) const {
-    constexpr int kRoundOff = 1000;
-    const T scale = block.of(stages_).cwiseAbs().maxCoeff();
-    const T limit = T(kRoundOff) * std::numeric_limits<T>::epsilon() * scale;
-    return (change.array() < limit).all();  // false for a NaN and for infinite stages
+    return scale;
   }
 
   void newton(const Block& block, StepReport& report) {
@@ -375,7 +351,6 @@ class RungeKutta {
   alignas(64) StageVector<T, s> weights_;  // h omega_i
   Algebraic branch_;
   T stop_ = T(0);
-  T first_change_ = T(0);
   int most_iterations_ = kMaxIterations;
   bool with_newton_ = true;
   T start_time_ = T(0);

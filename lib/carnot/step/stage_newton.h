@@ -117,7 +117,7 @@ class StageNewton {
       }
       const bool stalled = change >= smallest;
       smallest = std::min(smallest, change);
-      if (change <= kernel.stop_ || (stalled && kernel.settled(block, Point::Constant(change)))) {
+      if (change <= kernel.stop_ || (stalled && is_round_off(change, kernel.scale_of(block)))) {
         return kernel.evaluate_all(block, report);
       }
       if (stalled && monotone) return false;

@@ -44,7 +44,9 @@ template <int W, class System, class Lane = typename pack_lane::Widest<W>::type>
 }
 
 // d(z_dot)/dz at W points side by side: entry (r, c) of all is row 2n r + c of `jacobian`, times
-// the row `weights`. The rate on Jets of packs with 2n directions. False when some lane fails.
+// the row `weights`. The rate on Jets of packs, kDirections columns at a time: Jets of all 2n
+// directions do not fit the registers, and take the compiler several times as long. False when some
+// lane fails.
 template <int W, class System>
 [[gnu::flatten, gnu::noinline]] bool packed_jacobian(const System& system,
                                                      const double* t,
@@ -56,21 +58,30 @@ template <int W, class System>
     return system.packed_jacobian(t, z, weights, jacobian);
   } else {
     constexpr int n = System::kDof;
+    constexpr int kDirections = 3;
     using P = Pack<W>;
-    using J = Jet<P, 2 * n>;
-    Vector<P, 2 * n> point;
-    for (int i = 0; i < 2 * n; ++i) point[i] = P::load(z + i * W);
-    const Vector<J, 2 * n> seeds = seeded(point);
-    const Vector<J, n> q = seeds.template head<n>();
-    const Vector<J, n> p = seeds.template tail<n>();
-    Vector<J, System::kAlgebraic> y;
-    Rate<J, n> rate;
-    if (system.rate(J(P::load(t)), q, p, y, rate) != RateStatus::kOk) return false;
+    using J = Jet<P, kDirections>;
     const P weight = P::load(weights);
-    for (int r = 0; r < n; ++r) {
-      for (int c = 0; c < 2 * n; ++c) {
-        (weight * rate.q_dot[r].v[c]).store(jacobian + (2 * n * r + c) * W);
-        (weight * rate.p_dot[r].v[c]).store(jacobian + (2 * n * (n + r) + c) * W);
+    for (int first = 0; first < 2 * n; first += kDirections) {
+      Vector<J, n> q;
+      Vector<J, n> p;
+      for (int i = 0; i < n; ++i) {
+        q[i].a = P::load(z + i * W);
+        p[i].a = P::load(z + (n + i) * W);
+        for (int d = 0; d < kDirections; ++d) {
+          q[i].v[d] = P(first + d == i ? 1 : 0);
+          p[i].v[d] = P(first + d == n + i ? 1 : 0);
+        }
+      }
+      Vector<J, System::kAlgebraic> y;
+      Rate<J, n> rate;
+      if (system.rate(J(P::load(t)), q, p, y, rate) != RateStatus::kOk) return false;
+      for (int d = 0; d < kDirections && first + d < 2 * n; ++d) {
+        double* const column = jacobian + (first + d) * W;
+        for (int r = 0; r < n; ++r) {
+          (weight * rate.q_dot[r].v[d]).store(column + 2 * n * r * W);
+          (weight * rate.p_dot[r].v[d]).store(column + 2 * n * (n + r) * W);
+        }
       }
     }
     return true;
@@ -93,12 +104,14 @@ bool columns_in_pack(const System& system,
   alignas(64) std::array<double, size * W> points;
   alignas(64) std::array<double, size * W> rates;
   alignas(64) std::array<double, m * W> solutions;
+  int used = m;
+  if constexpr (IsErased<System>) used = system.algebraic_count();
   for (int l = 0; l < W; ++l) {
     const int column = std::min(l, count - 1);
     time[l] = t[column];
     for (int k = 0; k < size; ++k) points[k * W + l] = z(k, first + column);
     if constexpr (IsErased<System>) {  // it may iterate, from the y of each point
-      for (int k = 0; k < m; ++k) solutions[k * W + l] = y(k, first + column);
+      for (int k = 0; k < used; ++k) solutions[k * W + l] = y(k, first + column);
     }
   }
   if (!packed_rate<W>(system, time.data(), points.data(), solutions.data(), rates.data())) {
@@ -106,7 +119,7 @@ bool columns_in_pack(const System& system,
   }
   for (int l = 0; l < count; ++l) {
     for (int k = 0; k < size; ++k) z_dot(k, first + l) = rates[k * W + l];
-    for (int k = 0; k < m; ++k) y(k, first + l) = solutions[k * W + l];
+    for (int k = 0; k < used; ++k) y(k, first + l) = solutions[k * W + l];
   }
   return true;
 }

@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <type_traits>
 #include <utility>
 
 #include "carnot/numerics/gradient.h"
 #include "carnot/system/measures.h"
+#include "carnot/system/packed_iteration.h"
 #include "carnot/system/packed_rate.h"
-#include "carnot/system/packed_sweep.h"
 #include "carnot/system/phase_space.h"
 #include "carnot/system/system_functions.h"
 
@@ -110,18 +111,31 @@ bool jacobians(
 }
 
 template <class System>
-Sweep sweep(const void* opaque, const SweepData& data) {
-  constexpr int size = 2 * System::kDof;
-  constexpr int s = kErasedLanes;
-  Sweep sweep{false, move_stages<size, s>(data, [](int, const auto&) {})};
-  sweep.ok = rates<System>(opaque, data.time, data.stages, data.algebraic, data.increments);
-  if (!sweep.ok) return sweep;
-  const Pack<s> weight = Pack<s>::load(data.weights);
-  for (int k = 0; k < size; ++k) {
-    double* const row = data.increments + k * s;
-    (weight * Pack<s>::load(row)).store(row);
+StageReport iterate(const void* opaque,
+                    const StageData& data,
+                    const IterationLimits<double>& limits) {
+  if constexpr (PacksRates<System>) {
+    return packed_iteration<kErasedLanes>(system_of<System>(opaque), data, limits);
+  } else {
+    constexpr int size = 2 * System::kDof;
+    constexpr int s = kErasedLanes;
+    StageReport report;
+    const auto sweep = [&](double* change) {
+      ++report.sweeps;
+      const double moved = move_stages<size, s>(data, change, [](int, const auto&) {});
+      std::array<double, size * s> z_dot;
+      if (!rates<System>(opaque, data.time, data.stages, data.algebraic, z_dot.data())) {
+        return std::numeric_limits<double>::quiet_NaN();
+      }
+      for (int k = 0; k < size; ++k) {
+        for (int l = 0; l < s; ++l) data.increments[k * s + l] = data.weights[l] * z_dot[k * s + l];
+      }
+      return moved;
+    };
+    report.end =
+        iterate_stages<double, size>(limits, sweep, [&] { return scale_of_stages<size, s>(data); });
+    return report;
   }
-  return sweep;
 }
 
 template <class System>
@@ -133,18 +147,6 @@ double hamiltonian(
                                                Vector<double, n>(view<n>(q)),
                                                Vector<double, n>(view<n>(p)),
                                                Vector<double, m>(view<m>(y)));
-}
-
-template <class System>
-double explicit_rate(
-    const void* opaque, double t, const double* q, const double* p, const double* y) {
-  constexpr int n = System::kDof;
-  constexpr int m = System::kAlgebraic;
-  return carnot::explicit_rate(system_of<System>(opaque),
-                               t,
-                               Vector<double, n>(view<n>(q)),
-                               Vector<double, n>(view<n>(p)),
-                               Vector<double, m>(view<m>(y)));
 }
 
 template <class System>
@@ -164,24 +166,26 @@ RateStatus find_multipliers(
 }
 
 template <class System>
-double constraint_norm(const void* opaque, const double* q, const double* v) {
-  constexpr int n = System::kDof;
-  return carnot::constraint_norm(
-      system_of<System>(opaque), Vector<double, n>(view<n>(q)), Vector<double, n>(view<n>(v)));
+void measure(const void* opaque,
+             int count,
+             const double* t,
+             const double* weights,
+             const double* z,
+             const double* dq,
+             const double* y,
+             PointMeasures* out) {
+  measure_points(system_of<System>(opaque), count, t, weights, z, dq, y, out);
 }
 
 template <class System>
-double holonomic_error(const void* opaque, const double* q, const double* v) {
+NodeMeasures measure_node(const void* opaque, double t, const double* z, double* y) {
   constexpr int n = System::kDof;
-  return carnot::holonomic_error(
-      system_of<System>(opaque), Vector<double, n>(view<n>(q)), Vector<double, n>(view<n>(v)));
-}
-
-template <class System>
-double speed(const void* opaque, const double* q, const double* v) {
-  constexpr int n = System::kDof;
-  return system_of<System>(opaque).speed(Vector<double, n>(view<n>(q)),
-                                         Vector<double, n>(view<n>(v)));
+  constexpr int m = System::kAlgebraic;
+  Vector<double, m> algebraic = view<m>(y);
+  const NodeMeasures out = carnot::measure_node<System>(
+      system_of<System>(opaque), t, view<n>(z), view<n>(z + n), algebraic);
+  view<m>(y) = algebraic;
+  return out;
 }
 
 template <class System>
@@ -204,13 +208,11 @@ const SystemFunctions& functions_of() {
                                                  calls::jacobian<System>,
                                                  calls::rates<System>,
                                                  calls::jacobians<System>,
-                                                 calls::sweep<System>,
+                                                 calls::iterate<System>,
                                                  calls::hamiltonian<System>,
-                                                 calls::explicit_rate<System>,
                                                  calls::find_multipliers<System>,
-                                                 calls::constraint_norm<System>,
-                                                 calls::holonomic_error<System>,
-                                                 calls::speed<System>,
+                                                 calls::measure<System>,
+                                                 calls::measure_node<System>,
                                                  calls::branch<System>};
   return kFunctions;
 }

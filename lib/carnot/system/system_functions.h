@@ -6,6 +6,7 @@
 #pragma once
 
 #include "carnot/system/rate_status.h"
+#include "carnot/system/stage_iteration.h"
 
 namespace carnot {
 
@@ -15,8 +16,8 @@ inline constexpr int kMostAlgebraic = 2;
 // How many points are evaluated in one call.
 inline constexpr int kErasedLanes = 8;
 
-// One iteration on the eight stages of a step, see packed_sweep().
-struct SweepData {
+// The stages of a step, side by side: the data of packed_iteration().
+struct StageData {
   const double* time;          // of the stages
   const double* mu;            // 8 x 8, column by column
   const double* weights;       // h omega of the stages
@@ -25,13 +26,26 @@ struct SweepData {
   double* stages;              // 2n rows
   double* algebraic;           // rows of y
   double* increments;          // 2n rows
-  double* change;              // of each component, the largest over the stages; may be null
 };
 
-// What one iteration did.
-struct Sweep {
-  bool ok = false;    // else some lane fails: ask the rates one by one which and why
-  double change = 0;  // the largest of an entry of the stages
+struct StageReport {
+  IterationEnd end = IterationEnd::kGaveUp;
+  int sweeps = 0;
+};
+
+// What is measured at a point of a motion, with velocity v.
+struct PointMeasures {
+  double lagrangian = 0;  // p.v - H
+  double speed = 0;       // the integrand of the length; NaN where there is no metric
+  double power = 0;       // H_t at fixed q, p, y
+  double constraint = 0;  // |g(q, v)| / max(1, |v|)
+};
+
+// What is measured at a node, where v is the rate. H is NaN where that fails.
+struct NodeMeasures {
+  double hamiltonian = 0;
+  double constraint = 0;
+  double holonomic = 0;  // max of |h(q)| and |Dh v| / max(1, |v|)
 };
 
 struct SystemFunctions {
@@ -55,12 +69,12 @@ struct SystemFunctions {
                     const double* z,
                     const double* weights,
                     double* jacobian);
-  Sweep (*sweep)(const void* system, const SweepData& data);
+  // The fixed-point iteration on the stages of a step.
+  StageReport (*iterate)(const void* system,
+                         const StageData& data,
+                         const IterationLimits<double>& limits);
 
   double (*hamiltonian)(
-      const void* system, double t, const double* q, const double* p, const double* y);
-  // H_t at fixed q, p, y.
-  double (*explicit_rate)(
       const void* system, double t, const double* q, const double* p, const double* y);
   // lambda at a solution y.
   RateStatus (*find_multipliers)(const void* system,
@@ -69,9 +83,17 @@ struct SystemFunctions {
                                  const double* p,
                                  const double* y,
                                  double* lambda);
-  double (*constraint_norm)(const void* system, const double* q, const double* v);
-  double (*holonomic_error)(const void* system, const double* q, const double* v);
-  double (*speed)(const void* system, const double* q, const double* v);
+  // At the first `count` of kErasedLanes points side by side, with velocities dq / weights.
+  void (*measure)(const void* system,
+                  int count,
+                  const double* t,
+                  const double* weights,
+                  const double* z,
+                  const double* dq,
+                  const double* y,
+                  PointMeasures* out);
+  // y is the branch and the warm start, and the solution afterwards.
+  NodeMeasures (*measure_node)(const void* system, double t, const double* z, double* y);
   // The y that a run begins with; zero leaves the choice to the system.
   void (*branch)(const void* system, double* y);
 };

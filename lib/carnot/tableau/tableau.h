@@ -33,10 +33,13 @@ template <class T, int s>
 using StageMatrix =
     Eigen::Matrix<T, s, s, 0, s == kAnyStages ? kMostStages : s, s == kAnyStages ? kMostStages : s>;
 
-// Aligned so that a row of eight lies in one cache line.
+// Where s is fixed a method may have fewer stages. The others are idle: all their coefficients are
+// zero, so that they stay at the start of the step and add nothing. Aligned so that a row of eight
+// lies in one cache line.
 template <class T, int s = kAnyStages>
 struct Tableau {
   int order = 0;
+  int active = 0;  // stages, where s is fixed
   Coupling coupling = Coupling::kFull;
   bool partitioned = false;
   StageVector<T, s> c;                  // nodes
@@ -55,7 +58,7 @@ struct Tableau {
   // Row k, column j: weight of L_j in Legendre coefficient k. Collocation methods only.
   alignas(64) StageMatrix<T, s> legendre;
 
-  [[nodiscard]] int stages() const { return static_cast<int>(c.size()); }
+  [[nodiscard]] int stages() const { return s == kAnyStages ? static_cast<int>(c.size()) : active; }
   [[nodiscard]] T momentum_mu(int i, int j) const { return partitioned ? mu_p(i, j) : mu(i, j); }
 };
 
@@ -67,7 +70,7 @@ bool is_symplectic(const Tableau<T, s>& tableau) {
       if (tableau.mu(i, j) + tableau.momentum_mu(j, i) != T(1)) return false;
     }
   }
-  return tableau.update.minCoeff() == T(1);
+  return (tableau.update.array() == T(1)).count() == tableau.stages();
 }
 
 // omega and update from b.
@@ -100,23 +103,34 @@ void set_extrapolation(Tableau<T, s>& tableau) {
   }
 }
 
-// The same numbers with the number of stages known at compile time. Full coupling only.
+// The same method with room for s stages, known at compile time. Full coupling only.
 template <int s, class T>
 Tableau<T, s> fixed_stages(const Tableau<T, kAnyStages>& of) {
-  assert(of.coupling == Coupling::kFull && of.stages() == s);
+  assert(of.coupling == Coupling::kFull && of.stages() <= s);
+  const auto vector = [](const StageVector<T, kAnyStages>& some) {
+    StageVector<T, s> all = StageVector<T, s>::Zero();
+    all.head(some.size()) = some;
+    return all;
+  };
+  const auto matrix = [](const StageMatrix<T, kAnyStages>& some) {
+    StageMatrix<T, s> all = StageMatrix<T, s>::Zero();
+    all.topLeftCorner(some.rows(), some.cols()) = some;
+    return all;
+  };
   Tableau<T, s> tableau;
   tableau.order = of.order;
+  tableau.active = of.stages();
   tableau.coupling = of.coupling;
+  tableau.c = vector(of.c);
+  tableau.b = vector(of.b);
+  tableau.omega = vector(of.omega);
+  tableau.update = vector(of.update);
   tableau.partitioned = of.partitioned;
-  tableau.c = of.c;
-  tableau.b = of.b;
-  tableau.omega = of.omega;
-  tableau.update = of.update;
-  tableau.mu = of.mu;
-  tableau.mu_p = of.partitioned ? of.mu_p : of.mu;
-  tableau.extrapolation = of.extrapolation;
-  tableau.cautious = of.cautious;
-  tableau.legendre = of.legendre;
+  tableau.mu = matrix(of.mu);
+  tableau.mu_p = of.partitioned ? matrix(of.mu_p) : tableau.mu;
+  tableau.extrapolation = matrix(of.extrapolation);
+  tableau.cautious = matrix(of.cautious);
+  tableau.legendre = matrix(of.legendre);
   return tableau;
 }
 

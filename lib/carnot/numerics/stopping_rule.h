@@ -17,9 +17,9 @@ class StoppingRule {
  public:
   enum class Verdict { kGoOn, kAtRest, kStalled };
 
-  // After an iteration that changed each component by up to `change`.
-  Verdict operator()(const Vector<T, size>& change) {
-    const T most = change.maxCoeff();
+  // After an iteration that changed each component by up to `change`, of which `most` is the
+  // largest.
+  Verdict operator()(const Vector<T, size>& change, const T& most) {
     bool falling = first_;
     bool at_rest = true;
     for (int k = 0; k < size; ++k) {

@@ -1,0 +1,30 @@
+// Dynamics of a scene with holonomic constraints, which RATTLE keeps.
+#pragma once
+
+#include <string_view>
+
+#include "carnot/flow/rattle_kernel.h"
+#include "carnot/make_dynamics.h"
+
+namespace carnot {
+
+// As make_dynamics(). RATTLE runs in a kernel that is compiled with the scene, which takes several
+// times as long.
+template <class Scene>
+Dynamics make_rattle_dynamics(const Scene& scene, std::string_view name = default_method<Scene>()) {
+  using namespace dynamics_calls;
+  static_assert(HasHolonomic<Scene>, "without holonomic constraints: make_dynamics()");
+  using System = decltype(make_system(scene));
+  const Method& method = method_for(scene, name);
+  if constexpr (IsProduct<Scene>) {
+    if (method.family != kRattleFamily) {
+      static_assert(kHasCompiledKernel<Scene>);
+      return with_compiled_kernel(scene, method);
+    }
+  }
+  Dynamics dynamics = bind(scene, method, SystemOnBranch<System>{make_system(scene)});
+  dynamics.kernel = make_rattle_kernel<System>(method, periods_of(dynamics.info));
+  return dynamics;
+}
+
+}  // namespace carnot

@@ -1,0 +1,107 @@
+// The fixed-point iteration on all the stages of a step, side by side in packs.
+#pragma once
+
+#include <limits>
+
+#include "carnot/numerics/linear_algebra.h"
+#include "carnot/numerics/pack.h"
+#include "carnot/system/index_one_system.h"
+#include "carnot/system/stage_iteration.h"
+#include "carnot/system/system_functions.h"
+
+namespace carnot {
+
+// sum + A x for an s x s matrix with its columns one after the other. Two chains of additions, for
+// the processor to overlap.
+template <int s>
+[[gnu::always_inline]] inline Pack<s> combination(const double* columns,
+                                                  const double* x,
+                                                  const Pack<s>& sum) {
+  Pack<s> even = sum + Pack<s>::load(columns) * Pack<s>(x[0]);
+  Pack<s> odd = Pack<s>::load(columns + s) * Pack<s>(x[1]);
+#pragma GCC unroll 4
+  for (int j = 2; j < s; j += 2) {
+    even += Pack<s>::load(columns + j * s) * Pack<s>(x[j]);
+    odd += Pack<s>::load(columns + (j + 1) * s) * Pack<s>(x[j + 1]);
+  }
+  return even + odd;
+}
+
+// The stages U from the increments L: row k <- value_k + (compensation_k + mu L_k). use(k, U_k) is
+// called for each row. Returns the largest change of an entry.
+template <int size, int s, class Use>
+[[gnu::always_inline]] inline double move_stages(const StageData& data,
+                                                 double* change,
+                                                 const Use& use) {
+  using P = Pack<s>;
+  P most(0);
+  for (int k = 0; k < size; ++k) {
+    const P sum = combination<s>(data.mu, data.increments + k * s, P(data.compensation[k]));
+    const P u = P(data.value[k]) + sum;
+    const P moved = abs(u - P::load(data.stages + k * s));
+    u.store(data.stages + k * s);
+    if (change != nullptr) change[k] = largest(moved);
+    most = max(most, moved);
+    use(k, u);
+  }
+  return largest(most);
+}
+
+// The largest entry of the stages, in absolute value.
+template <int size, int s>
+double scale_of_stages(const StageData& data) {
+  Pack<s> most(0);
+  for (int k = 0; k < size; ++k) most = max(most, abs(Pack<s>::load(data.stages + k * s)));
+  return largest(most);
+}
+
+// One sweep: the stages, then L = weights f(U), and y. Returns the largest change of a stage, NaN
+// where a rate fails. Never inlined into the loop of the iteration: the compiler would move all
+// constants of the rate out of it, of which there are more than registers, and take a third longer.
+template <int s, class System>
+[[gnu::flatten, gnu::noinline]] double sweep_stages(const System& system,
+                                                    const StageData& data,
+                                                    double* change) {
+  constexpr int n = System::kDof;
+  using P = Pack<s>;
+  Vector<P, n> q;
+  Vector<P, n> p;
+  const double moved = move_stages<2 * n, s>(
+      data, change, [&](int k, const P& u) { (k < n ? q[k] : p[k - n]) = u; });
+  Vector<P, System::kAlgebraic> y;
+  Rate<P, n> rate;
+  if (system.rate(P::load(data.time), q, p, y, rate) != RateStatus::kOk) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  const P weight = P::load(data.weights);
+  for (int k = 0; k < n; ++k) {
+    (weight * rate.q_dot[k]).store(data.increments + k * s);
+    (weight * rate.p_dot[k]).store(data.increments + (n + k) * s);
+  }
+  for (int k = 0; k < System::kAlgebraic; ++k) y[k].store(data.algebraic + k * s);
+  return moved;
+}
+
+// The whole iteration. Where a rate fails, the stages are moved and the increments are those
+// before.
+template <int s, class System>
+StageReport packed_iteration(const System& system,
+                             const StageData& data,
+                             const IterationLimits<double>& limits) {
+  if constexpr (IsErased<System>) {
+    static_assert(s == kErasedLanes);
+    return system.packed_iteration(data, limits);
+  } else {
+    StageReport report;
+    report.end = iterate_stages<double, 2 * System::kDof>(
+        limits,
+        [&](double* change) {
+          ++report.sweeps;
+          return sweep_stages<s>(system, data, change);
+        },
+        [&] { return scale_of_stages<2 * System::kDof, s>(data); });
+    return report;
+  }
+}
+
+}  // namespace carnot
