@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "run/delivery.h"
+#include "run/laboratory.h"
 #include "run/subcommands.h"
 #include "text/arguments.h"
 #include "text/interrupt.h"
@@ -84,28 +85,26 @@ CLI::App* find_subcommand(CLI::App& app, const std::vector<std::string>& argumen
          fmt::format("{}", fmt::join(known, ", ")));
 }
 
-void build(CLI::App& app, Invocation& invocation) {
+void build(CLI::App& app, Invocation& invocation, std::span<const AddSubcommand> subcommands) {
   app.name("carnot");
   app.set_help_flag("-h,--help", "print this help and exit");
   app.set_version_flag(
       "--version", std::string("carnot ") + kVersion, "print the version and exit");
   app.footer(kFooter);
-  add_geodesic(app, invocation);
-  add_continue(app, invocation);
-  add_flow(app, invocation);
-  add_scenes(app, invocation);
-  add_methods(app, invocation);
-  add_verify(app, invocation);
-  add_paper(app, invocation);
-  add_benchmark(app, invocation);
-  add_stress(app, invocation);
+  for (const AddSubcommand add : subcommands) add(app, invocation);
+  // For --help; what they do is in another program.
+  const std::vector<std::string> names = subcommand_names(app);
+  for (const LaboratoryCommand& command : kLaboratory) {
+    if (std::find(names.begin(), names.end(), command.name) != names.end()) continue;
+    add_laboratory_command(app, command.name);
+  }
   app.require_subcommand(0, 1);
 }
 
-int run(const std::vector<std::string>& arguments) {
+int run(const std::vector<std::string>& arguments, std::span<const AddSubcommand> subcommands) {
   Invocation invocation{arguments};
   CLI::App app("Geodesics of mechanical systems under velocity constraints.");
-  build(app, invocation);
+  build(app, invocation, subcommands);
   const CLI::App* subcommand = find_subcommand(app, arguments);
   std::vector<std::string> joined =
       subcommand == nullptr ? arguments : join_values(arguments, classified_options(*subcommand));
@@ -123,10 +122,11 @@ int run(const std::vector<std::string>& arguments) {
 
 }  // namespace
 
-int run_program(const std::vector<std::string>& arguments) {
+int run_program(const std::vector<std::string>& arguments,
+                std::span<const AddSubcommand> subcommands) {
   int status = kNotDelivered;
   try {
-    status = run(arguments);
+    status = run(arguments, subcommands);
   } catch (const std::invalid_argument& error) {
     complain(error.what());
     return kBadInput;

@@ -6,6 +6,10 @@ source "$(dirname "${BASH_SOURCE[0]}")/prepare.sh"
 install_packages "$root/scripts/packages.txt"
 # Tests or not is left as it is, so that a built tree is not configured again.
 is_configured CARNOT_BUILD_APPS=ON || configure CARNOT_BUILD_APPS=ON CARNOT_BUILD_TESTS=OFF
-build_targets carnot
+targets=(carnot)
+case ${1-} in
+  methods | verify | paper | benchmark | stress) targets+=(carnot_laboratory) ;;
+esac
+build_targets "${targets[@]}"
 exec 9>&-  # the lock of prepare.sh
 exec "$build/bin/carnot" "$@"

@@ -18,6 +18,7 @@
 #include "benchmark/benchmark_rows.h"
 #include "carnot/plots/plot_file.h"
 #include "run/delivery.h"
+#include "run/laboratory.h"
 #include "run/subcommands.h"
 #include "text/nearest.h"
 #include "text/numbers.h"
@@ -329,7 +330,7 @@ int run_benchmark(const Options& options, const std::vector<std::string>& argume
 
 void add_benchmark(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<Options>();
-  CLI::App& benchmark = *app.add_subcommand("benchmark", "Measure speed against error.");
+  CLI::App& benchmark = add_laboratory_command(app, "benchmark");
   benchmark
       .add_option("SCENE", options->scenes, "vehicle-cosine, vehicle, heisenberg (all of them)")
       ->type_name("");

@@ -13,6 +13,7 @@
 #include "catalogue/scene_choice.h"
 #include "run/delivery.h"
 #include "run/geodesic_text.h"
+#include "run/laboratory.h"
 #include "run/random_target.h"
 #include "run/subcommands.h"
 #include "text/numbers.h"
@@ -197,7 +198,7 @@ int run_stress(const StressOptions& options, const std::vector<std::string>& arg
 
 void add_stress(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<StressOptions>();
-  CLI::App& stress = *app.add_subcommand("stress", "Find geodesics to many random targets.");
+  CLI::App& stress = add_laboratory_command(app, "stress");
   stress.add_option("SCENE", options->scene, "a name from `carnot scenes`")->type_name("");
   stress.add_option("--set", options->set, "set a parameter of the scene (repeatable)")
       ->type_name("NAME=VALUE")

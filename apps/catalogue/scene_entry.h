@@ -41,7 +41,7 @@ struct SceneEntry {
   std::function<Dynamics(const ParameterValues&, const std::string& method)> make;
 };
 
-// In the order of the house; made on first use.
+// All scenes, in the order in which `carnot scenes` lists them; made on first use.
 const std::vector<SceneEntry>& scene_registry();
 
 }  // namespace carnot::apps

@@ -18,7 +18,7 @@ constexpr long kMostPoints = 1000000;
 constexpr long kMostRank = 10000;
 constexpr long kSamples = 129;  // of the start, for its knots
 
-constexpr const char* kFooter = R"(
+constexpr const char* kContinueFooter = R"(
 Follows one geodesic by pseudo-arclength from --from, --to, --time and --set, where s = 0, to the
 value of --along, where s = 1: `to=Q1`, `from=Q0`, `time=T` or a parameter of the scene. Folds, where
 the curve turns back, are passed; folds and branch points are listed. Every point is checked by an
@@ -35,7 +35,7 @@ Examples
 Exit status: 0 followed to an end of the line, until it closed, or for --max-points; 1 it stopped
 before or no geodesic was found to start with, 2 bad input, 130 interrupted.)";
 
-struct Options {
+struct ContinueCall {
   RunOptions run;
   std::string from;
   std::string to;
@@ -49,7 +49,7 @@ struct Options {
   bool no_labels = false;
 };
 
-ContinueRequest check(const Options& options) {
+ContinueRequest check(const ContinueCall& options) {
   ContinueRequest request;
   request.run = check(options.run);
   const SceneEntry& entry = *request.run.entry;
@@ -117,7 +117,7 @@ ContinuationReport run(const ContinueRequest& request) {
   return report;
 }
 
-void add_continue_options(CLI::App& app, Options& options) {
+void add_continue_options(CLI::App& app, ContinueCall& options) {
   const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
     app.add_option(name, value, help)->type_name(type);
   };
@@ -136,14 +136,14 @@ void add_continue_options(CLI::App& app, Options& options) {
 }  // namespace
 
 void add_continue(CLI::App& app, Invocation& invocation) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ContinueCall>();
   CLI::App& subcommand = *app.add_subcommand(
       "continue", "Follow a geodesic while an end, the time or a parameter changes.");
   add_continue_options(subcommand, *options);
   add_model_options(subcommand, options->run);
   add_effort_options(subcommand, options->run);
   add_result_options(subcommand, options->run.destination);
-  subcommand.footer(kFooter);
+  subcommand.footer(kContinueFooter);
   subcommand.callback([options, &invocation] {
     const ContinueRequest request = check(*options);
     const ContinuationReport report = run(request);

@@ -16,7 +16,7 @@
 namespace carnot::apps {
 namespace {
 
-constexpr const char* kFooter = R"(
+constexpr const char* kFlowFooter = R"(
 Exactly one of --momentum and --velocity, exactly one of --step, --steps and --tolerance.
 p = dL/dq' - G' lambda. --velocity must satisfy the constraints to 1e-9 relative; it is then
 projected, and p follows with lambda = 0 or that of --lambda. Angles are radians; pi/2 and -3*pi/4
@@ -137,7 +137,7 @@ void add_flow(CLI::App& app, Invocation& invocation) {
   add("--start-time", options->start_time, "T0", "time at the start (0)");
   flow.add_flag("--tangent", options->tangent, "also d(q,p)(T)/d(q,p)(0)");
   add_run_options(flow, options->run);
-  flow.footer(kFooter);
+  flow.footer(kFlowFooter);
   flow.callback([options, &invocation] {
     const FlowRequest request = check(*options);
     const FlowOutcome outcome = run_flow(request);

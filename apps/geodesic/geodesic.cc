@@ -18,7 +18,7 @@ namespace {
 constexpr long kMostGeodesics = 10000;
 constexpr long kMostStarts = 10000000;
 
-constexpr const char* kFooter = R"(
+constexpr const char* kGeodesicFooter = R"(
 No guess is needed. Distinct extremals are listed, least action first; mirror partners count
 separately. Angles live on the cover: 0 and 2 pi are different ends, unless --mod-angles. Every
 extremal is checked by an independent integration at a tighter setting: its largest error at the end
@@ -39,7 +39,7 @@ Examples
 Exit status: 0 found (also when fewer than --count exist), 1 nothing converged, 2 bad input,
 130 interrupted.)";
 
-struct Options {
+struct GeodesicCall {
   RunOptions run;
   std::string from;
   std::string to;
@@ -65,7 +65,7 @@ std::string check_minimiser(const std::string& name) {
   return name;
 }
 
-GeodesicOptions check_search(const Options& options, const Run& run) {
+GeodesicOptions check_search(const GeodesicCall& options, const Run& run) {
   GeodesicOptions search;
   if (options.all && !options.count.empty()) {
     refuse("--count", options.count, "given besides --all", "one of the two");
@@ -92,7 +92,7 @@ GeodesicOptions check_search(const Options& options, const Run& run) {
   return search;
 }
 
-GeodesicRequest check(const Options& options) {
+GeodesicRequest check(const GeodesicCall& options) {
   GeodesicRequest request;
   request.run = check(options.run);
   const auto names = coordinate_names(*request.run.entry);
@@ -115,7 +115,7 @@ GeodesicReport search(const GeodesicRequest& request) {
       BoundaryValueProblem(request.run.dynamics, request.from, request.to, request.time), options);
 }
 
-void add_search_options(CLI::App& app, Options& options) {
+void add_search_options(CLI::App& app, GeodesicCall& options) {
   const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
     app.add_option(name, value, help)->type_name(type);
   };
@@ -138,13 +138,13 @@ void add_search_options(CLI::App& app, Options& options) {
 }  // namespace
 
 void add_geodesic(CLI::App& app, Invocation& invocation) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<GeodesicCall>();
   options->run.holonomic_default = "rattle6";  // for the accuracy that verification asks for
   CLI::App& geodesic =
       *app.add_subcommand("geodesic", "Find geodesics between two configurations.");
   add_search_options(geodesic, *options);
   add_run_options(geodesic, options->run);
-  geodesic.footer(kFooter);
+  geodesic.footer(kGeodesicFooter);
   geodesic.callback([options, &invocation] {
     const GeodesicRequest request = check(*options);
     const GeodesicReport report = search(request);

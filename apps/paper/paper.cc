@@ -13,6 +13,7 @@
 #include "carnot/plots/interrupts_blocked.h"
 #include "paper/paper_parts.h"
 #include "run/delivery.h"
+#include "run/laboratory.h"
 #include "run/subcommands.h"
 #include "text/interrupt.h"
 #include "text/numbers.h"
@@ -24,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kFooter = R"(
+constexpr const char* kPaperFooter = R"(
 McLachlan, Modin, Verdier & Wilkins, Symplectic integrators for index one constraints, SIAM J. Sci.
 Comput. 35 (2013), sections 5 and 6: what the paper says and what is measured here. A misprint is a
 number that the paper's own equations contradict; the right one was measured.
@@ -202,12 +203,12 @@ int run_paper(const PaperOptions& options, const std::vector<std::string>& argum
 
 void add_paper(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<PaperOptions>();
-  CLI::App& paper = *app.add_subcommand("paper", "Redo the figures and numbers of the paper.");
+  CLI::App& paper = add_laboratory_command(app, "paper");
   paper.add_option("--output", options->output, "write figures and paper.json to a directory")
       ->type_name("DIR");
   paper.add_flag("--json", options->destination.json, "print one JSON object");
   paper.add_flag("--quiet", options->destination.quiet, "no progress bar");
-  paper.footer(kFooter);
+  paper.footer(kPaperFooter);
   paper.callback([options, &invocation] {
     invocation.exit_status = run_paper(*options, invocation.arguments);
   });

@@ -14,7 +14,7 @@
 namespace carnot::apps {
 namespace {
 
-constexpr const char* kFooter = R"(
+constexpr const char* kScenesFooter = R"(
 Examples
   carnot scenes
   carnot scenes vehicle
@@ -22,7 +22,7 @@ Examples
 
 Exit status: 0 success, 1 a file could not be written, 2 bad input, 130 interrupted.)";
 
-struct Options {
+struct ScenesCall {
   std::string scene;
   Destination destination;
 };
@@ -104,11 +104,11 @@ std::string details(const SceneEntry& entry) {
 }  // namespace
 
 void add_scenes(CLI::App& app, Invocation& invocation) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ScenesCall>();
   CLI::App& scenes = *app.add_subcommand("scenes", "List the scenes, or describe one.");
   scenes.add_option("SCENE", options->scene, "describe only this one")->type_name("");
   add_table_options(scenes, options->destination);
-  scenes.footer(kFooter);
+  scenes.footer(kScenesFooter);
   scenes.callback([options, &invocation] {
     const SceneEntry* one = options->scene.empty() ? nullptr : &find_scene(options->scene);
     check_table_output(options->destination);

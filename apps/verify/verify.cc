@@ -11,6 +11,7 @@
 #include "catalogue/method_table.h"
 #include "catalogue/scene_choice.h"
 #include "run/delivery.h"
+#include "run/laboratory.h"
 #include "run/subcommands.h"
 #include "text/nearest.h"
 #include "text/numbers.h"
@@ -20,7 +21,7 @@
 namespace carnot::apps {
 namespace {
 
-constexpr const char* kFooter = R"(
+constexpr const char* kVerifyFooter = R"(
 Without names one scene of each kind is taken, and every method that suits it. What is measured:
   measured     slope of log(error) over log(step) above round-off, at least three points; in
                parentheses where double does not resolve it: always above order 12
@@ -44,7 +45,7 @@ constexpr long kQuickSteps = 2000;
 constexpr long kFewestSteps = 1000;  // so that a tenth of them still tells
 constexpr long kMostSteps = 100000000;
 
-struct Options {
+struct VerifyCall {
   std::vector<std::string> scenes;
   std::string methods;
   std::string steps;
@@ -85,7 +86,7 @@ std::vector<const Method*> check_methods(const std::string& text) {
   return chosen;
 }
 
-std::vector<Scene> check_scenes(const Options& options) {
+std::vector<Scene> check_scenes(const VerifyCall& options) {
   std::vector<Scene> scenes;
   std::set<std::string> seen;
   for (const std::string& name : options.scenes.empty() ? default_audit_scenes() : options.scenes) {
@@ -194,7 +195,7 @@ Result verify_result(const std::vector<Scene>& scenes,
   return result;
 }
 
-int run_verify(const Options& options, const std::vector<std::string>& arguments) {
+int run_verify(const VerifyCall& options, const std::vector<std::string>& arguments) {
   const auto begin = std::chrono::steady_clock::now();
   check_table_output(options.destination);
   const auto named = check_methods(options.methods);
@@ -217,9 +218,8 @@ int run_verify(const Options& options, const std::vector<std::string>& arguments
 }  // namespace
 
 void add_verify(CLI::App& app, Invocation& invocation) {
-  auto options = std::make_shared<Options>();
-  CLI::App& verify =
-      *app.add_subcommand("verify", "Measure what the methods keep, on a scene of every kind.");
+  auto options = std::make_shared<VerifyCall>();
+  CLI::App& verify = add_laboratory_command(app, "verify");
   verify.add_option("SCENE", options->scenes, "names from `carnot scenes` (one of each kind)")
       ->type_name("");
   verify.add_option("--method", options->methods, "names from `carnot methods`, with commas (all)")
@@ -231,7 +231,7 @@ void add_verify(CLI::App& app, Invocation& invocation) {
       .add_option("--threads", options->threads, "threads; the answer does not depend on it (all)")
       ->type_name("N");
   add_table_options(verify, options->destination);
-  verify.footer(kFooter);
+  verify.footer(kVerifyFooter);
   verify.callback([options, &invocation] {
     invocation.exit_status = run_verify(*options, invocation.arguments);
   });

@@ -14,12 +14,12 @@ core='carnot/((laws|transcription|flow|step|tableau|system|scene|numerics)/)?[a-
 scenes='carnot/scenes/[a-z0-9_]+\.h'
 
 # The rooms of a layer from the top floor down: folders, or headers that are not in a folder.
-lib_rooms='make_inlined_dynamics make_dynamics laws dynamics transcription flow step tableau system scenes language scene
+lib_rooms='make_inlined_dynamics make_rattle_dynamics make_dynamics laws dynamics transcription flow step tableau system scenes language scene
   numerics'
 shooting_rooms='ompl_state_space continuation warm_start steering_function steer continue
   find_geodesics search extremal shoot path problem geodesic_options boundary_value_problem geodesic
   reason linear'
-apps_rooms='ompl main program benchmark paper tables verify flow geodesic continue run catalogue text'
+apps_rooms='ompl main laboratory program benchmark paper verify tables flow geodesic continue run catalogue text'
 
 # climbing FOLDER PREFIX ROOMS: prints each include that goes to a floor above its own. FOLDER holds
 # the rooms, and PREFIX is how their headers are included.
