@@ -12,10 +12,10 @@ namespace carnot::plots {
 namespace {
 
 constexpr std::size_t kFrames = 90;
-constexpr std::size_t kMostRows = 720;
+constexpr std::size_t kRowsOfAFrame = 720;
 constexpr std::size_t kStill = 20;          // frames that show the end
 constexpr const char* kMoving = "#202020";  // one colour: a .gif holds 256 in all its frames
-constexpr double kBelow = 100;
+constexpr double kLegendHeight = 100;
 constexpr double kAbove = 75;
 
 // Rows of the trajectory, one per frame, then the last one for a while.
@@ -60,14 +60,14 @@ void put_time(Script& script, const Picture& page, double t) {
 
 Picture plane_animation(const SceneInfo& info, const Curve& curve) {
   using Role = Polyline::Role;
-  const Trajectory trajectory = thinned(*curve.trajectory, kMostRows);
-  PlaneFrame frame(PlaneExtent(info, {curve}, 0), {90, kBelow, 685, 520});
-  frame.box.y = kBelow;
+  const Trajectory trajectory = thinned(*curve.trajectory, kRowsOfAFrame);
+  PlaneFrame frame(PlaneExtent(info, {curve}, 0), {90, kLegendHeight, 685, 520});
+  frame.box.y = kLegendHeight;
   Picture page;
   page.animated = true;
-  page.height = kBelow + frame.box.height + kAbove;
+  page.height = kLegendHeight + frame.box.height + kAbove;
   Script script;
-  const Box bar{frame.box.x + frame.box.width + 22, kBelow, 14, frame.box.height};
+  const Box bar{frame.box.x + frame.box.width + 22, kLegendHeight, 14, frame.box.height};
   std::vector<LegendEntry> legend = path_legend(info, curve, frame);
   std::erase_if(legend, [](const LegendEntry& entry) {  // no tracks are drawn
     return entry.title.find("other wheel") == 0;
@@ -100,7 +100,7 @@ Picture plane_animation(const SceneInfo& info, const Curve& curve) {
 Picture space_animation(const SceneInfo& info, const Curve& curve) {
   constexpr double kTurned = 50;  // degrees, in all
   constexpr double kFoot = 62;
-  const Trajectory trajectory = thinned(*curve.trajectory, kMostRows);
+  const Trajectory trajectory = thinned(*curve.trajectory, kRowsOfAFrame);
   const SpaceFrame frame(info, {curve});
   const double first = frame.turn - kTurned / 4;
   const std::array<double, 2> turns = {first, first + kTurned};

@@ -6,7 +6,6 @@
 namespace carnot::plots {
 namespace {
 
-constexpr double kLargest = 1e150;
 constexpr double kFar = 1e4;     // spans from the origin: beyond, an offset is taken off
 constexpr double kFlat = 1e-12;  // relative span that is rounding only
 
@@ -22,7 +21,7 @@ double round_step(double x) {
 }  // namespace
 
 void Interval::include(double x) {
-  if (!std::isfinite(x) || std::abs(x) >= kLargest) return;
+  if (!std::isfinite(x) || std::abs(x) >= kTooLarge) return;
   lower = std::min(lower, x);
   upper = std::max(upper, x);
 }

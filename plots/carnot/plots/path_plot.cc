@@ -8,7 +8,6 @@ namespace carnot::plots {
 namespace {
 
 const std::string kWheelStyle = "with lines lw 1 dt (6,4) lc rgb '#8c8c8c'";
-const std::string kMiddle = "lc rgb '#a82296'";  // of the colours of time
 
 // The bodies between start and goal.
 std::vector<std::size_t> between(const SceneInfo& info,
@@ -35,14 +34,16 @@ std::vector<LegendEntry> path_legend(const SceneInfo& info,
   std::vector<LegendEntry> entries = {
       {body(start), "with points pt 7 ps 1.1" + start, "start"},
       {body(goal), "with points pt 5 ps 1.0" + goal, "goal"},
-      {"with lines lw 2.2 " + kMiddle,
+      {"with lines lw 2.2 " + line_color_of(TimeColors::kMiddle),
        "",
        "path of " + (path.empty() ? "" : escaped(path) + " ") + coordinates}};
   const std::size_t wheels = other_wheels(info, *curve.trajectory, frame).size();
   if (wheels > 0)
     entries.push_back({kWheelStyle, "", wheels == 1 ? "other wheel" : "other wheels"});
   if (info.drawing.body && !info.drawing.glyph.empty()) {
-    entries.push_back({"with lines lw 1.4 " + kMiddle, "", escaped(info.drawing.glyph)});
+    entries.push_back({"with lines lw 1.4 " + line_color_of(TimeColors::kMiddle),
+                       "",
+                       escaped(info.drawing.glyph)});
   }
   return entries;
 }

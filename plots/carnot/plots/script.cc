@@ -12,8 +12,6 @@
 namespace carnot::plots {
 namespace {
 
-constexpr double kLargest = 1e150;  // gnuplot squares numbers
-
 std::string classic(double x, int digits) {
   std::ostringstream out;
   out.imbue(std::locale::classic());
@@ -95,6 +93,8 @@ double text_width(const std::string& markup) {
 
 std::string number(double x, int digits) { return classic(x, digits); }
 
+std::string line_color_of(const char* color) { return std::string("lc rgb '") + color + "'"; }
+
 std::string line_color(std::size_t i) {
   static constexpr std::array<const char*, 7> kColors = {
       "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000"};
@@ -144,7 +144,7 @@ Script::Script() {
 
 bool drawable(const Row& row) {
   return !row.empty() && std::all_of(row.begin(), row.end(), [](double x) {
-    return std::isfinite(x) && std::abs(x) < kLargest;
+    return std::isfinite(x) && std::abs(x) < kTooLarge;
   });
 }
 

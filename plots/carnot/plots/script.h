@@ -17,6 +17,8 @@ using Rows = std::vector<Row>;
 // A blank row ends a line; inside Plot::add.
 inline Row gap() { return {}; }
 
+// Numbers from here on cannot be drawn: gnuplot squares them.
+inline constexpr double kTooLarge = 1e150;
 // Whether all the numbers of a row can be drawn, and whether those of any row can be.
 bool drawable(const Row& row);
 bool drawable(const Rows& rows);
@@ -36,12 +38,15 @@ double text_width(const std::string& markup);
 // A number of the given significant digits, as in "%g".
 std::string number(double x, int digits = 15);
 
+// "lc rgb 'COLOR'".
+std::string line_color_of(const char* color);
 // Colours that colour-blind readers can tell apart (Okabe and Ito 2008).
 std::string line_color(std::size_t i);
 
 // Time, from start to goal: the darker three quarters of the "plasma" map, even in perception.
 struct TimeColors {
   static constexpr const char* kStart = "#0d0887";
+  static constexpr const char* kMiddle = "#a82296";
   static constexpr const char* kGoal = "#f07f2f";
   static std::string palette();
   // "0xAARRGGBB" for a fraction of the time; alpha 0 is opaque.

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kMostPoints = 4000;  // more than a page can show only swell the file
 constexpr double kLeft = 100;              // axis label and numbers
-constexpr double kBelow = 65;              // axis label
+constexpr double kLabelHeight = 65;        // axis label
 constexpr double kPanelTitle = 30;
 constexpr double kMostDecades = 100;  // about 1: beyond, gnuplot's own arithmetic overflows
 
@@ -260,7 +260,7 @@ Picture series_picture(const SeriesPage& what) {
     width = std::max(width, legend_width(what.panels[i]));
     titled = titled || !what.panels[i].title.empty();
   }
-  const double row_height = what.height + kBelow + (titled ? kPanelTitle : 0);
+  const double row_height = what.height + kLabelHeight + (titled ? kPanelTitle : 0);
   Picture page;
   page.width = kRight;
   for (const double legend : legends) page.width += kLeft + what.width + legend;
@@ -274,7 +274,7 @@ Picture series_picture(const SeriesPage& what) {
     const std::size_t column = i % columns;
     const std::size_t row = i / columns;
     if (column == 0) x = 0;
-    const double y = static_cast<double>(rows - 1 - row) * row_height + kBelow;
+    const double y = static_cast<double>(rows - 1 - row) * row_height + kLabelHeight;
     draw_panel(script, page, what.panels[i], {x + kLeft, y, what.width, what.height});
     x += kLeft + what.width + legends[column];
   }

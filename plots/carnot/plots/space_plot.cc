@@ -16,10 +16,9 @@ const std::string kGrid = "with lines lw 0.6 lc rgb '#e4e4e4'";
 const std::string kEdge = "with lines lw 0.8 lc rgb '#9a9a9a'";
 const std::string kTic = "with lines lw 1 lc rgb '#000000'";
 const std::string kShadow = "with lines lw 1 lc rgb '#b4b4b4'";
-const std::string kMiddle = "lc rgb '#a82296'";  // of the colours of time
 
-std::string start_color() { return std::string(" lc rgb '") + TimeColors::kStart + "'"; }
-std::string goal_color() { return std::string(" lc rgb '") + TimeColors::kGoal + "'"; }
+std::string start_color() { return " " + line_color_of(TimeColors::kStart); }
+std::string goal_color() { return " " + line_color_of(TimeColors::kGoal); }
 
 Interval extent(const SceneInfo& info, const std::vector<Curve>& curves, std::size_t axis) {
   constexpr std::size_t kAllAlong = 90;
@@ -457,12 +456,13 @@ std::vector<LegendEntry> space_legend(const SceneInfo& info) {
   std::vector<LegendEntry> entries = {
       {"", "with points pt 7 ps 1.2" + start_color(), "start"},
       {"", "with points pt 5 ps 1.1" + goal_color(), "goal"},
-      {"with lines lw 2.2 " + kMiddle,
+      {"with lines lw 2.2 " + line_color_of(TimeColors::kMiddle),
        "",
        drawing.path.empty() ? "path" : "path of " + escaped(drawing.path)}};
   if (drawing.sphere == 0) entries.push_back({kShadow, "", "shadow"});
   if (drawing.body_in_space && !drawing.glyph.empty()) {
-    entries.push_back({"with lines lw 1.4 " + kMiddle, "", escaped(drawing.glyph)});
+    entries.push_back(
+        {"with lines lw 1.4 " + line_color_of(TimeColors::kMiddle), "", escaped(drawing.glyph)});
   }
   return entries;
 }

@@ -14,7 +14,7 @@ using namespace internal;
 namespace {
 
 constexpr int kFirstSegments = 8;  // where the start was verified at knots
-constexpr long kFewSteps = 32;
+constexpr long kLeastSteps = 32;
 
 std::string message_of(const ContinuationReport& report) {
   const double s = report.points.empty() ? 0 : report.points.back().s;
@@ -124,7 +124,7 @@ ContinuationReport continue_geodesic(const ProblemLine& asked,
   asked.at(1).validate();
   check_start(original, start);
   const ProblemLine line{[&](double s) { return at_origin(asked.at(s)); }, asked.only_target};
-  const long steps = std::max(kFewSteps, start.plan.count / 2);
+  const long steps = std::max(kLeastSteps, start.plan.count / 2);
   ContinuationReport report;
   CurveTracer tracer(line, options, steps, 0, report);
   report.status = tracer.trace(starting_place(original, line.at(0), start, steps));
