@@ -12,7 +12,7 @@
 #include <string>
 
 #include "testing/attitude.h"
-#include "testing/more_scene_runs.h"
+#include "testing/charted_scene_runs.h"
 #include "testing/reference.h"
 
 namespace carnot::velocity_scenes_closed_form_test {

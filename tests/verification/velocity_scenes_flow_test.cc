@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "testing/attitude.h"
-#include "testing/more_scene_runs.h"
+#include "testing/charted_scene_runs.h"
 
 namespace carnot::velocity_scenes_flow_test {
 namespace {
@@ -77,7 +77,7 @@ class VelocityScenesFlowTest : public ::testing::Test {
   const System system_{scene_};
   test::Generator generator_{1};
 };
-TYPED_TEST_SUITE(VelocityScenesFlowTest, test::MoreScenes, test::SceneNames);
+TYPED_TEST_SUITE(VelocityScenesFlowTest, test::ChartedScenes, test::SceneNames);
 
 // With steps so small that the method is exact to round-off, all are kept, whatever their form.
 TYPED_TEST(VelocityScenesFlowTest, KeepsItsInvariants) {

@@ -1,4 +1,4 @@
-#include "testing/more_scene_runs.h"
+#include "testing/charted_scene_runs.h"
 
 namespace carnot::test {
 

@@ -1,10 +1,10 @@
-// gauss8 with its tangent on each of MoreScenes, compiled once for the tests of the flows.
+// gauss8 with its tangent on each of ChartedScenes, compiled once for the tests of the flows.
 #pragma once
 
 #include "carnot/flow/tangent_flow.h"
 #include "carnot/step/gauss.h"
+#include "testing/charted_scenes.h"
 #include "testing/geometry_laws.h"
-#include "testing/more_scenes.h"
 
 namespace carnot::test {
 

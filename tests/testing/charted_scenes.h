@@ -18,12 +18,12 @@
 namespace carnot::test {
 
 // Three trailers stand for one and two, which are the same text.
-using MoreScenes = ::testing::Types<scenes::Martinet,
-                                    scenes::Engel,
-                                    scenes::Trailers<3>,
-                                    scenes::Satellite,
-                                    scenes::PlateBall,
-                                    scenes::FallingCat>;
+using ChartedScenes = ::testing::Types<scenes::Martinet,
+                                       scenes::Engel,
+                                       scenes::Trailers<3>,
+                                       scenes::Satellite,
+                                       scenes::PlateBall,
+                                       scenes::FallingCat>;
 
 // Rigid motions of the plane are symmetries.
 using MorePlanarScenes = ::testing::Types<scenes::Trailers<3>, scenes::PlateBall>;
