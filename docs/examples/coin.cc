@@ -12,21 +12,15 @@ struct Coin {
 
   template <class T>
   carnot::Matrix<T, 4, 4> mass(const carnot::Vector<T, 4>& /*q*/) const {
-    carnot::Matrix<T, 4, 4> m = carnot::Matrix<T, 4, 4>::Constant(carnot::constant<T>(0));
-    m(0, 0) = m(1, 1) = carnot::constant<T>(1);
-    m(2, 2) = carnot::constant<T>(0.25);
-    m(3, 3) = carnot::constant<T>(0.5);
-    return m;
+    return carnot::diagonal<T>(1, 1, 0.25, 0.5);
   }
 
   // x' = phi' cos theta, y' = phi' sin theta.
   template <class T>
   carnot::Matrix<T, 2, 4> constraints(const carnot::Vector<T, 4>& q) const {
     using std::cos, std::sin;
-    const T zero = carnot::constant<T>(0);
-    const T one = carnot::constant<T>(1);
     carnot::Matrix<T, 2, 4> g;
-    g << one, zero, zero, -cos(q[2]), zero, one, zero, -sin(q[2]);
+    g << 1, 0, 0, -cos(q[2]), 0, 1, 0, -sin(q[2]);
     return g;
   }
 };

@@ -26,10 +26,10 @@ struct DriftingCharge {
   template <class T>
   T hamiltonian(const carnot::Vector<T, 3>& z) const {
     using std::sin;
-    const T half = carnot::constant<T>(0.5);
-    const T quarter = carnot::constant<T>(0.25);
+    const T half = 0.5;
+    const T quarter = 0.25;
     const T w2 = z[2] * z[2];
-    const T trap = half * carnot::constant<T>(stiffness) * (z[0] * z[0] + z[1] * z[1]);
+    const T trap = half * stiffness * (z[0] * z[0] + z[1] * z[1]);
     return trap - z[2] * sin(z[0]) + half * w2 + quarter * w2 * w2;
   }
 

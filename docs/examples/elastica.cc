@@ -22,12 +22,12 @@ struct Elastica {
   template <class T>
   carnot::Vector<T, 3> drift(const carnot::Vector<T, 3>& q) const {
     using std::cos, std::sin;
-    return {cos(q[2]), sin(q[2]), carnot::constant<T>(0)};
+    return {cos(q[2]), sin(q[2]), 0};
   }
 
   template <class T>
   carnot::Matrix<T, 3, 1> frame(const carnot::Vector<T, 3>& /*q*/) const {
-    return {carnot::constant<T>(0), carnot::constant<T>(0), carnot::constant<T>(1)};
+    return {0, 0, 1};
   }
 
   carnot::SceneInfo info() const {

@@ -19,10 +19,10 @@ struct QuarticParticle {
 
   template <class T>
   T lagrangian(const T& /*t*/, const carnot::Vector<T, 2>& q, const carnot::Vector<T, 2>& v) const {
-    const T half = carnot::constant<T>(0.5);
-    const T quarter = carnot::constant<T>(0.25);
+    const T half = 0.5;
+    const T quarter = 0.25;
     const T speed2 = carnot::dot(v, v);
-    const T trap = half * carnot::constant<T>(stiffness) * carnot::dot(q, q);
+    const T trap = half * stiffness * carnot::dot(q, q);
     return half * speed2 + quarter * speed2 * speed2 - trap;
   }
 };

@@ -26,22 +26,19 @@ struct Skate {
 
   template <class T>
   carnot::Matrix<T, 3, 3> mass(const carnot::Vector<T, 3>& /*q*/) const {
-    carnot::Matrix<T, 3, 3> m = carnot::Matrix<T, 3, 3>::Constant(carnot::constant<T>(0));
-    m(0, 0) = m(1, 1) = carnot::constant<T>(1);
-    m(2, 2) = carnot::constant<T>(inertia);
-    return m;
+    return carnot::diagonal<T>(1, 1, inertia);
   }
 
   template <class T>
   carnot::Matrix<T, 1, 3> constraints(const carnot::Vector<T, 3>& q) const {
     using std::cos, std::sin;
-    return {sin(q[2]), -cos(q[2]), carnot::constant<T>(0)};
+    return {sin(q[2]), -cos(q[2]), 0};
   }
 
   // What follows is optional. V is zero where a scene has no potential.
   template <class T>
   T potential(const carnot::Vector<T, 3>& q) const {
-    return -carnot::constant<T>(gravity) * q[0];
+    return -gravity * q[0];
   }
 
   // The columns span the admissible velocities, G B = 0: gliding and turning. With a frame no
@@ -49,16 +46,15 @@ struct Skate {
   template <class T>
   carnot::Matrix<T, 3, 2> frame(const carnot::Vector<T, 3>& q) const {
     using std::cos, std::sin;
-    const T zero = carnot::constant<T>(0);
     carnot::Matrix<T, 3, 2> b;
-    b << cos(q[2]), zero, sin(q[2]), zero, zero, carnot::constant<T>(1);
+    b << cos(q[2]), 0, sin(q[2]), 0, 0, 1;
     return b;
   }
 
   // The diagonal of B'M B, for a frame whose columns are orthogonal under M.
   template <class T>
   carnot::Vector<T, 2> frame_masses(const carnot::Vector<T, 3>& /*q*/) const {
-    return {carnot::constant<T>(1), carnot::constant<T>(inertia)};
+    return {1, inertia};
   }
 
   // make_dynamics() refuses values that are out of these ranges, and names the parameter.
