@@ -256,7 +256,7 @@ TYPED_TEST(LagrangianSceneInfoTest, ParametersHaveDefaultsInTheirRanges) {
   EXPECT_NO_THROW(validate(TypeParam{}));
   for (const auto& parameter : TypeParam::parameters()) {
     TypeParam scene;
-    parameter.value(scene) = std::nan("");
+    scene.*parameter.value = std::nan("");
     EXPECT_THROW(validate(scene), std::invalid_argument) << parameter.name;
   }
 }

@@ -185,7 +185,7 @@ TEST(VehicleCosineTest, PotentialIsMinusCosineOfTheDistance) {
   test::Generator generator(3);
   for (int i = 0; i < kSamples; ++i) {
     const auto q = test::random_vector<4>(generator, 5);
-    const double half = 0.5 * scene.vehicle.length;
+    const double half = 0.5 * scene.length;
     const double r = std::hypot(q[0] - half * std::cos(q[2]), q[1] - half * std::sin(q[2]));
     EXPECT_NEAR(scene.potential(q), -std::cos(r), 16 * kEps);
   }
