@@ -15,7 +15,7 @@ Scene with_parameters([[maybe_unused]] const ParameterValues& values) {
   if constexpr (HasParameters<Scene>) {
     for (const auto& parameter : Scene::parameters()) {
       const auto found = values.find(parameter.name);
-      if (found != values.end()) parameter.value(scene) = found->second;
+      if (found != values.end()) scene.*parameter.value = found->second;
     }
   }
   return scene;
@@ -35,7 +35,7 @@ SceneEntry make_entry(const Make& make) {
   if constexpr (HasParameters<Scene>) {
     for (const auto& parameter : Scene::parameters()) {
       entry.parameters.push_back({parameter.name,
-                                  parameter.value(scene),
+                                  scene.*parameter.value,
                                   parameter.unit,
                                   parameter.range,
                                   parameter.meaning});

@@ -60,16 +60,13 @@ struct Skate {
   // make_dynamics() refuses values that are out of these ranges, and names the parameter.
   static constexpr auto parameters() {
     using P = carnot::Parameter<Skate>;
-    return std::array{P{"inertia",
-                        [](Skate& s) -> double& { return s.inertia; },
-                        "length^2",
-                        carnot::Range::positive(),
-                        "moment of inertia about the point of contact, per unit mass"},
-                      P{"gravity",
-                        [](Skate& s) -> double& { return s.gravity; },
-                        "length/time^2",
-                        carnot::Range{},
-                        "acceleration along x"}};
+    return std::array{
+        P{"inertia",
+          &Skate::inertia,
+          "length^2",
+          carnot::Range::positive(),
+          "moment of inertia about the point of contact, per unit mass"},
+        P{"gravity", &Skate::gravity, "length/time^2", carnot::Range{}, "acceleration along x"}};
   }
 
   // Names and units, the period of an angle, the symmetries, and how a picture shows the body.

@@ -44,7 +44,7 @@ struct Range {
 template <class Scene>
 struct Parameter {
   const char* name;
-  double& (*value)(Scene&);
+  double Scene::*value;
   const char* unit;
   Range range;
   const char* meaning;
@@ -168,7 +168,7 @@ template <class Scene>
 void validate(Scene scene) {
   if constexpr (HasParameters<Scene>) {
     for (const auto& parameter : Scene::parameters()) {
-      const double value = parameter.value(scene);
+      const double value = scene.*parameter.value;
       if (!parameter.range.contains(value)) {
         throw std::invalid_argument("parameter " + std::string(parameter.name) + " = " +
                                     std::to_string(value) + " must be " + parameter.range.text());

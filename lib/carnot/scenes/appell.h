@@ -74,21 +74,14 @@ struct Appell {
 
   static constexpr auto parameters() {
     using P = Parameter<Appell>;
-    return std::array{P{"c",
-                        [](Appell& s) -> double& { return s.c; },
-                        "1",
-                        Range::positive(),
-                        "horizontal speed over vertical speed"},
-                      P{"gravity",
-                        [](Appell& s) -> double& { return s.gravity; },
-                        "length/time^2",
-                        Range{},
-                        "acceleration along -z"},
-                      P{"stiffness",
-                        [](Appell& s) -> double& { return s.stiffness; },
-                        "1/time^2",
-                        Range{},
-                        "of a spring to the z axis, per unit mass"}};
+    return std::array{
+        P{"c", &Appell::c, "1", Range::positive(), "horizontal speed over vertical speed"},
+        P{"gravity", &Appell::gravity, "length/time^2", Range{}, "acceleration along -z"},
+        P{"stiffness",
+          &Appell::stiffness,
+          "1/time^2",
+          Range{},
+          "of a spring to the z axis, per unit mass"}};
   }
 
   [[nodiscard]] SceneInfo info() const {

@@ -63,11 +63,8 @@ struct Bicycle {
 
   static constexpr auto parameters() {
     using P = Parameter<Bicycle>;
-    return std::array{P{"length",
-                        [](Bicycle& s) -> double& { return s.length; },
-                        "length",
-                        Range::positive(),
-                        "distance between the wheels"}};
+    return std::array{
+        P{"length", &Bicycle::length, "length", Range::positive(), "distance between the wheels"}};
   }
 
   [[nodiscard]] SceneInfo info() const {

@@ -61,7 +61,7 @@ struct Boat {
   static constexpr auto parameters() {
     using P = Parameter<Boat>;
     return std::array{P{"shear",
-                        [](Boat& s) -> double& { return s.shear; },
+                        &Boat::shear,
                         "1/time",
                         Range{},
                         "speed of the current per distance from the x axis"}};

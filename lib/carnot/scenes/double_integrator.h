@@ -69,12 +69,12 @@ struct DoubleIntegrator {
   static constexpr auto parameters() {
     using P = Parameter<DoubleIntegrator>;
     return std::array{P{"position_weight",
-                        [](DoubleIntegrator& s) -> double& { return s.position_weight; },
+                        &DoubleIntegrator::position_weight,
                         "1/time^4",
                         Range::non_negative(),
                         "weight of x^2 against that of u^2"},
                       P{"velocity_weight",
-                        [](DoubleIntegrator& s) -> double& { return s.velocity_weight; },
+                        &DoubleIntegrator::velocity_weight,
                         "1/time^2",
                         Range::non_negative(),
                         "weight of v^2 against that of u^2"}};

@@ -43,26 +43,19 @@ struct DrivenPendulum {
 
   static constexpr auto parameters() {
     using P = Parameter<DrivenPendulum>;
-    return std::array{P{"length",
-                        [](DrivenPendulum& s) -> double& { return s.length; },
-                        "length",
-                        Range::positive(),
-                        "of the pendulum"},
-                      P{"gravity",
-                        [](DrivenPendulum& s) -> double& { return s.gravity; },
-                        "length/time^2",
-                        Range{},
-                        "acceleration downwards"},
-                      P{"amplitude",
-                        [](DrivenPendulum& s) -> double& { return s.amplitude; },
-                        "length",
-                        Range::non_negative(),
-                        "of the pivot's motion"},
-                      P{"frequency",
-                        [](DrivenPendulum& s) -> double& { return s.frequency; },
-                        "rad/time",
-                        Range::non_negative(),
-                        "of the pivot's motion"}};
+    return std::array{
+        P{"length", &DrivenPendulum::length, "length", Range::positive(), "of the pendulum"},
+        P{"gravity", &DrivenPendulum::gravity, "length/time^2", Range{}, "acceleration downwards"},
+        P{"amplitude",
+          &DrivenPendulum::amplitude,
+          "length",
+          Range::non_negative(),
+          "of the pivot's motion"},
+        P{"frequency",
+          &DrivenPendulum::frequency,
+          "rad/time",
+          Range::non_negative(),
+          "of the pivot's motion"}};
   }
 
   [[nodiscard]] SceneInfo info() const {

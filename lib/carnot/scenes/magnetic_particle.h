@@ -95,26 +95,19 @@ struct MagneticParticle {
 
   static constexpr auto parameters() {
     using P = Parameter<MagneticParticle>;
-    return std::array{P{"mass",
-                        [](MagneticParticle& s) -> double& { return s.mass; },
-                        "mass",
-                        Range::positive(),
-                        "mass at rest"},
-                      P{"field",
-                        [](MagneticParticle& s) -> double& { return s.field; },
-                        "mass/time",
-                        Range{},
-                        "charge times magnetic field"},
-                      P{"light_speed",
-                        [](MagneticParticle& s) -> double& { return s.light_speed; },
-                        "length/time",
-                        Range::positive(),
-                        "speed at which the fourth-order term of the kinetic energy matters"},
-                      P{"stiffness",
-                        [](MagneticParticle& s) -> double& { return s.stiffness; },
-                        "mass/time^2",
-                        Range::non_negative(),
-                        "stiffness of the trap"}};
+    return std::array{
+        P{"mass", &MagneticParticle::mass, "mass", Range::positive(), "mass at rest"},
+        P{"field", &MagneticParticle::field, "mass/time", Range{}, "charge times magnetic field"},
+        P{"light_speed",
+          &MagneticParticle::light_speed,
+          "length/time",
+          Range::positive(),
+          "speed at which the fourth-order term of the kinetic energy matters"},
+        P{"stiffness",
+          &MagneticParticle::stiffness,
+          "mass/time^2",
+          Range::non_negative(),
+          "stiffness of the trap"}};
   }
 
   [[nodiscard]] SceneInfo info() const {

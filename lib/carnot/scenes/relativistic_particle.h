@@ -66,26 +66,19 @@ struct RelativisticParticle {
 
   static constexpr auto parameters() {
     using P = Parameter<RelativisticParticle>;
-    return std::array{P{"mass",
-                        [](RelativisticParticle& s) -> double& { return s.mass; },
-                        "mass",
-                        Range::positive(),
-                        "rest mass"},
-                      P{"light",
-                        [](RelativisticParticle& s) -> double& { return s.light; },
-                        "length/time",
-                        Range::positive(),
-                        "speed of light"},
-                      P{"charge",
-                        [](RelativisticParticle& s) -> double& { return s.charge; },
-                        "charge",
-                        Range{},
-                        "electric charge"},
-                      P{"field",
-                        [](RelativisticParticle& s) -> double& { return s.field; },
-                        "mass/(charge time)",
-                        Range{},
-                        "magnetic field along z"}};
+    return std::array{
+        P{"mass", &RelativisticParticle::mass, "mass", Range::positive(), "rest mass"},
+        P{"light",
+          &RelativisticParticle::light,
+          "length/time",
+          Range::positive(),
+          "speed of light"},
+        P{"charge", &RelativisticParticle::charge, "charge", Range{}, "electric charge"},
+        P{"field",
+          &RelativisticParticle::field,
+          "mass/(charge time)",
+          Range{},
+          "magnetic field along z"}};
   }
 
   [[nodiscard]] SceneInfo info() const {

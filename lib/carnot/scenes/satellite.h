@@ -111,16 +111,9 @@ struct Satellite {
 
   static constexpr auto parameters() {
     using P = Parameter<Satellite>;
-    return std::array{P{"j1",
-                        [](Satellite& s) -> double& { return s.j1; },
-                        "1",
-                        Range::positive(),
-                        "cost of turning about the body's x axis"},
-                      P{"j2",
-                        [](Satellite& s) -> double& { return s.j2; },
-                        "1",
-                        Range::positive(),
-                        "cost of turning about the body's y axis"}};
+    return std::array{
+        P{"j1", &Satellite::j1, "1", Range::positive(), "cost of turning about the body's x axis"},
+        P{"j2", &Satellite::j2, "1", Range::positive(), "cost of turning about the body's y axis"}};
   }
 
   [[nodiscard]] SceneInfo info() const {

@@ -87,16 +87,13 @@ struct SatelliteQuaternion {
 
   static constexpr auto parameters() {
     using P = Parameter<SatelliteQuaternion>;
-    return std::array{P{"j1",
-                        [](SatelliteQuaternion& s) -> double& { return s.j1; },
-                        "1",
-                        Range::positive(),
-                        "weight of the first body rate"},
-                      P{"j2",
-                        [](SatelliteQuaternion& s) -> double& { return s.j2; },
-                        "1",
-                        Range::positive(),
-                        "weight of the second body rate"}};
+    return std::array{
+        P{"j1", &SatelliteQuaternion::j1, "1", Range::positive(), "weight of the first body rate"},
+        P{"j2",
+          &SatelliteQuaternion::j2,
+          "1",
+          Range::positive(),
+          "weight of the second body rate"}};
   }
 
   [[nodiscard]] SceneInfo info() const {

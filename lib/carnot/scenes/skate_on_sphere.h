@@ -99,7 +99,7 @@ struct SkateOnSphere {
   static constexpr auto parameters() {
     using P = Parameter<SkateOnSphere>;
     return std::array{P{"beta",
-                        [](SkateOnSphere& s) -> double& { return s.beta; },
+                        &SkateOnSphere::beta,
                         "length",
                         Range::positive(),
                         "turning by one radian costs as much as driving this far"}};

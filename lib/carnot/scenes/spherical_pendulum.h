@@ -45,16 +45,13 @@ struct SphericalPendulum {
 
   static constexpr auto parameters() {
     using P = Parameter<SphericalPendulum>;
-    return std::array{P{"length",
-                        [](SphericalPendulum& s) -> double& { return s.length; },
-                        "length",
-                        Range::positive(),
-                        "length of the rod"},
-                      P{"gravity",
-                        [](SphericalPendulum& s) -> double& { return s.gravity; },
-                        "length/time^2",
-                        Range::non_negative(),
-                        "acceleration along -z"}};
+    return std::array{
+        P{"length", &SphericalPendulum::length, "length", Range::positive(), "length of the rod"},
+        P{"gravity",
+          &SphericalPendulum::gravity,
+          "length/time^2",
+          Range::non_negative(),
+          "acceleration along -z"}};
   }
 
   [[nodiscard]] SceneInfo info() const {

@@ -119,7 +119,7 @@ struct Trailers {
   static constexpr auto parameters() {
     using P = Parameter<Trailers>;
     return std::array{P{"trailer_weight",
-                        [](Trailers& s) -> double& { return s.trailer_weight; },
+                        &Trailers::trailer_weight,
                         "length^2",
                         Range::non_negative(),
                         "inertia of each trailer, that of the car being 1"}};

@@ -69,7 +69,7 @@ struct Unicycle {
   static constexpr auto parameters() {
     using P = Parameter<Unicycle>;
     return std::array{P{"beta",
-                        [](Unicycle& s) -> double& { return s.beta; },
+                        &Unicycle::beta,
                         "length",
                         Range::positive(),
                         "turning by one radian costs as much as driving this far"}};

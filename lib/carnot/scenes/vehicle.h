@@ -94,21 +94,18 @@ struct Vehicle {
 
   static constexpr auto parameters() {
     using P = Parameter<Vehicle>;
-    return std::array{P{"alpha",
-                        [](Vehicle& s) -> double& { return s.alpha; },
-                        "length^2",
-                        Range::non_negative(),
-                        "inertia of the body about the front wheel, per unit mass"},
-                      P{"beta",
-                        [](Vehicle& s) -> double& { return s.beta; },
-                        "length^2",
-                        Range::positive(),
-                        "inertia of the steered wheel, per unit mass"},
-                      P{"length",
-                        [](Vehicle& s) -> double& { return s.length; },
-                        "length",
-                        Range::positive(),
-                        "distance between the wheels"}};
+    return std::array{
+        P{"alpha",
+          &Vehicle::alpha,
+          "length^2",
+          Range::non_negative(),
+          "inertia of the body about the front wheel, per unit mass"},
+        P{"beta",
+          &Vehicle::beta,
+          "length^2",
+          Range::positive(),
+          "inertia of the steered wheel, per unit mass"},
+        P{"length", &Vehicle::length, "length", Range::positive(), "distance between the wheels"}};
   }
 
   [[nodiscard]] SceneInfo info() const {

@@ -10,30 +10,7 @@
 
 namespace carnot::scenes {
 
-struct VehicleCosine {
-  static constexpr int kDof = Vehicle::kDof;
-  static constexpr int kMultipliers = Vehicle::kMultipliers;
-
-  Vehicle vehicle;
-
-  template <class T>
-  [[nodiscard]] Matrix<T, 4, 4> mass(const Vector<T, 4>& q) const {
-    return vehicle.mass(q);
-  }
-  template <class T>
-  [[nodiscard]] Matrix<T, 2, 4> constraints(const Vector<T, 4>& q) const {
-    return vehicle.constraints(q);
-  }
-  template <class T>
-  [[nodiscard]] Matrix<T, 4, 2> frame(const Vector<T, 4>& q) const {
-    return vehicle.frame(q);
-  }
-
-  template <class T>
-  [[nodiscard]] Vector<T, 2> frame_masses(const Vector<T, 4>& q) const {
-    return vehicle.frame_masses(q);
-  }
-
+struct VehicleCosine : Vehicle {
   template <class T>
   [[nodiscard]] T potential(const Vector<T, 4>& q) const {
     const Vector<T, 2> m = midpoint(q);
@@ -47,8 +24,8 @@ struct VehicleCosine {
                                             const Vector<T, 2>& u) const {
     const Vector<T, 2> m = midpoint(q);
     const T slope = stumpff<1>(T(m[0] * m[0] + m[1] * m[1]));
-    const T half = constant<T>(0.5 * vehicle.length);
-    Vector<T, 4> gradient = vehicle.frame_gradient(q, p, u);
+    const T half = constant<T>(0.5 * length);
+    Vector<T, 4> gradient = Vehicle::frame_gradient(q, p, u);
     gradient[0] += slope * m[0];
     gradient[1] += slope * m[1];
     const Vector<T, 2> body = heading(q);
@@ -56,28 +33,8 @@ struct VehicleCosine {
     return gradient;
   }
 
-  static constexpr auto parameters() {
-    using P = Parameter<VehicleCosine>;
-    constexpr auto kOf = Vehicle::parameters();
-    return std::array{P{kOf[0].name,
-                        [](VehicleCosine& s) -> double& { return s.vehicle.alpha; },
-                        kOf[0].unit,
-                        kOf[0].range,
-                        kOf[0].meaning},
-                      P{kOf[1].name,
-                        [](VehicleCosine& s) -> double& { return s.vehicle.beta; },
-                        kOf[1].unit,
-                        kOf[1].range,
-                        kOf[1].meaning},
-                      P{kOf[2].name,
-                        [](VehicleCosine& s) -> double& { return s.vehicle.length; },
-                        kOf[2].unit,
-                        kOf[2].range,
-                        kOf[2].meaning}};
-  }
-
   [[nodiscard]] SceneInfo info() const {
-    SceneInfo info = vehicle.info();
+    SceneInfo info = Vehicle::info();
     info.name = "vehicle-cosine";
     info.summary = "the vehicle in the potential V = -cos r of its midpoint";
     info.symmetries.x = info.symmetries.y = -1;  // V is not the same everywhere
@@ -88,7 +45,7 @@ struct VehicleCosine {
  private:
   template <class T>
   [[nodiscard]] Vector<T, 2> midpoint(const Vector<T, 4>& q) const {
-    const T half = constant<T>(0.5 * vehicle.length);
+    const T half = constant<T>(0.5 * length);
     const Vector<T, 2> body = heading(q);
     return {q[0] - half * body[0], q[1] - half * body[1]};
   }
