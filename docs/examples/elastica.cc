@@ -34,7 +34,6 @@ struct Elastica {
     carnot::SceneInfo info;
     info.name = "elastica";
     info.summary = "a car of constant speed that is steered with the least effort";
-    info.kind = "optimal control";
     info.configuration = {
         {"x", "length", 0}, {"y", "length", 0}, {"theta", "rad", 2 * std::numbers::pi}};
     return info;

@@ -10,6 +10,7 @@
 
 #include "carnot/dynamics.h"
 #include "carnot/flow/make_kernel.h"
+#include "carnot/scene/describe_scene.h"
 #include "carnot/system/system_calls.h"
 #include "carnot/system/system_of.h"
 #include "carnot/tableau/methods.h"

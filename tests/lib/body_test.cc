@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "carnot/scene/describe_scene.h"
+
 namespace carnot::body_test {
 namespace {
 
@@ -106,13 +108,25 @@ TEST(BodyTest, AnArrowIsOnItsSphere) {
   EXPECT_NEAR(tip[2] / tip[1], 4.0 / 3, 16 * kEps);
 }
 
-struct Coin {
-  static constexpr int kDof = 2;
+// The least that a scene has.
+template <int n>
+struct Line {
+  static constexpr int kDof = n;
+  static constexpr int kMultipliers = 1;
+  template <class T>
+  [[nodiscard]] Matrix<T, n, n> mass(const Vector<T, n>& /*q*/) const {
+    return Matrix<T, n, n>::Identity();
+  }
+  template <class T>
+  [[nodiscard]] Matrix<T, 1, n> constraints(const Vector<T, n>& /*q*/) const {
+    return Matrix<T, 1, n>::Ones();
+  }
 };
 
+struct Coin : Line<2> {};
+
 template <int n>
-struct Chain {
-  static constexpr int kDof = n;
+struct Chain : Line<n> {
   SceneInfo info() const {
     SceneInfo info;
     info.summary = "a chain";
@@ -123,6 +137,7 @@ struct Chain {
 TEST(SceneInfoTest, AScenesTypeIsItsNameUnlessItHasOne) {
   const SceneInfo coin = describe_scene(Coin{});
   EXPECT_EQ(coin.name, "Coin");
+  EXPECT_EQ(coin.kind, "velocity constraints");
   ASSERT_EQ(coin.configuration.size(), 2U);
   EXPECT_EQ(coin.configuration[1].name, "q2");
   const SceneInfo chain = describe_scene(Chain<3>{});

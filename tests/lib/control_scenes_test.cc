@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 
+#include "carnot/scene/describe_scene.h"
 #include "carnot/system/optimal_control.h"
 #include "testing/control_scene_list.h"
 #include "testing/random_points.h"
@@ -26,7 +27,7 @@ class ControlScenesTest : public ::testing::Test {
 
   const Scene scene_ = test::uneven<Scene>();
   const OptimalControl<Scene> system_{scene_};
-  const SceneInfo info_ = scene_.info();
+  const SceneInfo info_ = describe_scene(scene_);
   test::Generator generator_{1};
 
   // H(q, p), u eliminated.

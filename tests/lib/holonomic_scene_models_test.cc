@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "carnot/scene/describe_scene.h"
 #include "carnot/scene/scene_info.h"
 #include "testing/random_points.h"
 #include "testing/reduced_scenes.h"
@@ -28,7 +29,7 @@ class HolonomicSceneModelsTest : public ::testing::Test {
 
   test::Generator generator_{1};
   const test::FullScene<Pair> scene_ = Pair::kFull;
-  const SceneInfo info_ = Pair::kFull.info();
+  const SceneInfo info_ = describe_scene(Pair::kFull);
 };
 using Pairs = ::testing::Types<test::RodSkatePair,
                                test::PendulumPair,

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "carnot/flow/flow.h"
+#include "carnot/scene/describe_scene.h"
 #include "carnot/scenes/appell.h"
 #include "carnot/scenes/driven_pendulum.h"
 #include "carnot/scenes/relativistic_particle.h"
@@ -230,7 +231,7 @@ TYPED_TEST(LagrangianSceneInfoTest, MirrorsAreSymmetries) {
   constexpr int kDof = TypeParam::kDof;
   const TypeParam scene;
   const LagrangianSystem<TypeParam> system(scene);
-  const SceneInfo info = scene.info();
+  const SceneInfo info = describe_scene(scene);
   EXPECT_EQ(info.kind, "Lagrangian");
   EXPECT_EQ(info.configuration.size(), kDof);
   EXPECT_FALSE(info.symmetries.mirrors.empty());

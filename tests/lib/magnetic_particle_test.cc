@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "carnot/flow/flow.h"
+#include "carnot/scene/describe_scene.h"
 #include "carnot/step/runge_kutta.h"
 #include "carnot/system/generalized_hamiltonian.h"
 #include "carnot/tableau/gauss_tableau.h"

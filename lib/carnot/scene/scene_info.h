@@ -106,7 +106,7 @@ struct Extreme {
 struct SceneInfo {
   std::string name;
   std::string summary;
-  std::string kind = "velocity constraints";
+  std::string kind;  // set by describe_scene()
   std::string reference;
   std::vector<Coordinate> configuration;
   Symmetries symmetries;
@@ -123,45 +123,6 @@ template <class Scene>
 concept HasParameters = requires {
   Scene::parameters();
 };
-
-// "Coin" for a struct Coin, in whatever namespace it is.
-template <class Scene>
-std::string type_name() {
-  // "... [with Scene = A::Coin<2>; ...]" or "... [Scene = A::Coin<2>]"
-  const std::string text = __PRETTY_FUNCTION__;
-  const std::string head = "Scene = ";
-  const std::size_t found = text.find(head);
-  if (found == std::string::npos) return "scene";
-  std::string name;
-  int depth = 0;  // of brackets
-  for (std::size_t i = found + head.size(); i < text.size(); ++i) {
-    const char c = text[i];
-    if (depth == 0 && (c == ';' || c == ']')) break;
-    if (depth == 0 && c == ':') {
-      name.clear();
-      continue;
-    }
-    depth += c == '<' || c == '(' || c == '{' || c == '[' ? 1 : 0;
-    depth -= c == '>' || c == ')' || c == '}' || c == ']' ? 1 : 0;
-    name += c;
-  }
-  return name;
-}
-
-// The scene's own description. A scene without a name is called like its type, coordinates that
-// are not described are called q1, ..., qn.
-template <class Scene>
-SceneInfo describe_scene(const Scene& scene) {
-  SceneInfo info;
-  if constexpr (HasInfo<Scene>) info = scene.info();
-  if (info.name.empty()) info.name = type_name<Scene>();
-  if (info.configuration.empty()) {
-    for (int i = 0; i < Scene::kDof; ++i) {
-      info.configuration.push_back({"q" + std::to_string(i + 1), "", 0});
-    }
-  }
-  return info;
-}
 
 // Throws std::invalid_argument naming the parameter that is out of its range.
 template <class Scene>

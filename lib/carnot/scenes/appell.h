@@ -88,7 +88,6 @@ struct Appell {
     SceneInfo info;
     info.name = "appell";
     info.summary = "Appell's constraint x'^2 + y'^2 = c^2 z'^2, not linear in the velocities";
-    info.kind = "Lagrangian";
     info.reference = "Appell, Rend. Circ. Mat. Palermo 32 (1911)";
     info.configuration = {{"x", "length", 0}, {"y", "length", 0}, {"z", "length", 0}};
     info.symmetries.mirrors = {{-1, 1, 1}, {1, -1, 1}};

@@ -71,7 +71,6 @@ struct Bicycle {
     SceneInfo info;
     info.name = "bicycle";
     info.summary = "a bicycle driven by its rear wheel: u1 rolls, u2 steers";
-    info.kind = "optimal control";
     info.reference = "De Luca, Oriolo & Samson, in Robot Motion Planning and Control (1998), ch. 4";
     // delta has no period: the end of the chart at pi/2 parts it from delta + pi.
     info.configuration = {{"x", "length", 0},

@@ -71,7 +71,6 @@ struct Boat {
     SceneInfo info;
     info.name = "boat";
     info.summary = "a boat in a sheared current, nonlinear in thrust and heading";
-    info.kind = "optimal control";
     info.reference = "Bryson & Ho, Applied Optimal Control (1975), ch. 2";
     info.configuration = {{"x", "length", 0}, {"y", "length", 0}};
     info.symmetries.mirrors = {{-1, -1}};

@@ -66,7 +66,6 @@ struct Brockett {
     SceneInfo info;
     info.name = "brockett";
     info.summary = "Brockett's integrator: x' = u1, y' = u2, z' = x u2 - y u1";
-    info.kind = "optimal control";
     info.reference = "Brockett, in New Directions in Applied Mathematics, Springer (1982)";
     info.configuration = {{"x", "length", 0}, {"y", "length", 0}, {"z", "length^2", 0}};
     info.symmetries.mirrors = {{-1, -1, 1}, {1, -1, -1}};

@@ -84,7 +84,6 @@ struct DoubleIntegrator {
     SceneInfo info;
     info.name = "double-integrator";
     info.summary = "linear-quadratic control of a mass: x' = v, v' = u";
-    info.kind = "optimal control";
     info.reference = "Bryson & Ho, Applied Optimal Control (1975), ch. 5";
     info.configuration = {{"x", "length", 0}, {"v", "length/time", 0}};
     info.symmetries.mirrors = {{-1, -1}};

@@ -62,7 +62,6 @@ struct DrivenPendulum {
     SceneInfo info;
     info.name = "kapitza-pendulum";
     info.summary = "a pendulum on a pivot that is shaken up and down: L depends on time";
-    info.kind = "Lagrangian";
     info.reference = "Landau & Lifshitz, Mechanics (1976), sec. 30";
     info.configuration = {{"theta", "rad", 2 * std::numbers::pi}};
     info.symmetries.mirrors = {{-1}};

@@ -62,7 +62,6 @@ struct Grushin {
     SceneInfo info;
     info.name = "grushin";
     info.summary = "the Grushin plane: x' = u1, y' = x u2";
-    info.kind = "optimal control";
     info.reference =
         "Agrachev, Barilari & Boscain, A Comprehensive Introduction to Sub-Riemannian Geometry "
         "(2019), ch. 9";

@@ -114,7 +114,6 @@ struct MagneticParticle {
     SceneInfo info;
     info.name = "magnetic-particle";
     info.summary = "a fast charge in a magnetic field and a trap; the multipliers are its velocity";
-    info.kind = "generalized Hamiltonian";
     info.reference = "Landau & Lifshitz, The Classical Theory of Fields (1975), sec. 21";
     info.configuration = {{"x", "length", 0}, {"y", "length", 0}};
     info.symmetries.mirrors = {{-1, -1}};

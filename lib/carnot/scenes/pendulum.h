@@ -44,7 +44,6 @@ struct Pendulum {
     SceneInfo info;
     info.name = "pendulum";
     info.summary = "swinging up a pendulum: theta' = w, w' = -sin(theta) + u, cost u^2/2";
-    info.kind = "optimal control";
     info.reference =
         "Astrom & Furuta, Swinging up a pendulum by energy control, Automatica 36 (2000)";
     info.configuration = {{"theta", "rad", 2 * std::numbers::pi}, {"w", "rad/time", 0}};

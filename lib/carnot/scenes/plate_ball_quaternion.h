@@ -100,7 +100,6 @@ struct PlateBallQuaternion {
     SceneInfo info;
     info.name = "plate-ball-quaternion";
     info.summary = "a ball rolls on a plane without slip or spin, its attitude a unit quaternion";
-    info.kind = "velocity + holonomic constraints";
     info.reference = "Jurdjevic, Arch. Rational Mech. Anal. 124 (1993)";
     info.configuration = {{"x", "length", 0},
                           {"y", "length", 0},

@@ -85,7 +85,6 @@ struct RelativisticParticle {
     SceneInfo info;
     info.name = "relativistic-particle";
     info.summary = "a relativistic charge in a uniform magnetic field: L not quadratic in q'";
-    info.kind = "Lagrangian";
     info.reference = "Landau & Lifshitz, The Classical Theory of Fields (1975), sec. 21";
     info.configuration = {{"x", "length", 0}, {"y", "length", 0}, {"z", "length", 0}};
     info.symmetries.mirrors = {{-1, -1, 1}, {1, 1, -1}};

@@ -90,7 +90,6 @@ struct RodSkate {
     SceneInfo info;
     info.name = "rod-skate";
     info.summary = "two masses on a rigid rod that glides on a skate, with gravity";
-    info.kind = "velocity + holonomic constraints";
     info.reference = "McLachlan, Modin, Verdier & Wilkins, SIAM J. Sci. Comput. 35 (2013), sec. 4";
     info.configuration = {
         {"x1", "length", 0}, {"y1", "length", 0}, {"x2", "length", 0}, {"y2", "length", 0}};

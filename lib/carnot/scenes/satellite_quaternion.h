@@ -100,7 +100,6 @@ struct SatelliteQuaternion {
     SceneInfo info;
     info.name = "satellite-quaternion";
     info.summary = "a satellite turned by two wheels, its attitude a unit quaternion";
-    info.kind = "velocity + holonomic constraints";
     info.reference = "Boscain & Rossi, SIAM J. Control Optim. 47 (2008)";
     info.configuration = {{"w", "1", 0}, {"x", "1", 0}, {"y", "1", 0}, {"z", "1", 0}};
     info.symmetries.mirrors = {{-1, -1, -1, -1}, {1, 1, -1, -1}, {1, -1, 1, -1}, {1, -1, -1, 1}};

@@ -109,7 +109,6 @@ struct SkateOnSphere {
     SceneInfo info;
     info.name = "skate-on-sphere";
     info.summary = "a skate on the unit sphere: a sub-Riemannian problem on SO(3)";
-    info.kind = "velocity + holonomic constraints";
     info.reference = "Boscain & Rossi, SIAM J. Control Optim. 47 (2008)";
     info.configuration = {{"x1", "length", 0},
                           {"x2", "length", 0},

@@ -58,7 +58,6 @@ struct SphericalPendulum {
     SceneInfo info;
     info.name = "spherical-pendulum";
     info.summary = "a mass on a rigid rod in space, with gravity";
-    info.kind = "velocity + holonomic constraints";
     info.reference = "McLachlan, Modin, Verdier & Wilkins, SIAM J. Sci. Comput. 35 (2013), sec. 4";
     info.configuration = {{"x", "length", 0}, {"y", "length", 0}, {"z", "length", 0}};
     info.symmetries.mirrors = {{-1, 1, 1}, {1, -1, 1}};
