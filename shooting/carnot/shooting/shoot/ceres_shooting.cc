@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "carnot/shooting/shoot/multiple_shooting.h"
 #include "carnot/shooting/shoot/shooting_equations.h"
@@ -10,10 +12,37 @@
 namespace carnot::internal {
 namespace {
 
+// The equations of a segment where the search begins: at z, its knots.
+struct Beginning {
+  std::vector<double> z;
+  std::vector<double> residual;
+  std::vector<double> jacobian;
+};
+
+// Of all segments; none where a flow or its tangent fails. Ceres logs an error when its first
+// evaluation fails, and a library must not print.
+std::vector<Beginning> begin(const ShootingEquations& equations, const Knots& knots) {
+  const int n = knots.dof;
+  std::vector<Beginning> all;
+  for (int i = 0; i < knots.segments; ++i) {
+    Beginning one;
+    one.z.assign(knots.at(i), knots.at(i) + (i + 1 == knots.segments ? 2 : 4) * n);
+    one.residual.resize(2 * n);
+    one.jacobian.resize(4 * n * n);
+    if (!equations.evaluate(
+            i, knots.at(i), knots.at(i + 1), one.residual.data(), one.jacobian.data())) {
+      return {};
+    }
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
 // Parameter blocks: q_i, p_i and, but for the last segment, q_{i+1}, p_{i+1}.
 class Jump final : public ceres::CostFunction {
  public:
-  Jump(const ShootingEquations& equations, int i) : equations_(equations), i_(i) {
+  Jump(const ShootingEquations& equations, int i, Beginning beginning)
+      : equations_(equations), i_(i), beginning_(std::move(beginning)) {
     const int n = equations.dof();
     const int blocks = i + 1 == equations.segments() ? 2 : 4;
     mutable_parameter_block_sizes()->assign(blocks, n);
@@ -26,11 +55,14 @@ class Jump final : public ceres::CostFunction {
     std::vector<double> z;
     for (int b = 0; b < blocks; ++b) z.insert(z.end(), x[b], x[b] + n);
     std::vector<double> jacobian(jacobians != nullptr ? num_residuals() * 2 * n : 0);
-    if (!equations_.evaluate(i_,
-                             z.data(),
-                             z.data() + 2 * n,
-                             residuals,
-                             jacobians != nullptr ? jacobian.data() : nullptr)) {
+    if (z == beginning_.z) {
+      std::copy_n(beginning_.residual.begin(), num_residuals(), residuals);
+      jacobian = beginning_.jacobian;
+    } else if (!equations_.evaluate(i_,
+                                    z.data(),
+                                    z.data() + 2 * n,
+                                    residuals,
+                                    jacobians != nullptr ? jacobian.data() : nullptr)) {
       return false;
     }
     for (int b = 0; jacobians != nullptr && b < blocks; ++b) {
@@ -48,6 +80,7 @@ class Jump final : public ceres::CostFunction {
  private:
   const ShootingEquations& equations_;
   int i_;
+  Beginning beginning_;
 };
 
 // Stops when the jumps are below the tolerance.
@@ -61,16 +94,6 @@ class StopWhenJoined final : public ceres::IterationCallback {
  private:
   double cost_;
 };
-
-// Ceres logs an error when the first evaluation fails; a library must not print.
-bool can_begin(const ShootingEquations& equations, const Knots& knots) {
-  std::vector<double> residual(2 * knots.dof);
-  for (int i = 0; i < knots.segments; ++i) {
-    if (!equations.evaluate(i, knots.at(i), knots.at(i + 1), residual.data(), nullptr))
-      return false;
-  }
-  return true;
-}
 
 ceres::Solver::Options solver_options(const BoundaryValueProblem& problem,
                                       const ShootingOptions& options) {
@@ -95,11 +118,12 @@ Shooting shoot_with_ceres(const BoundaryValueProblem& problem,
                           Knots& knots) {
   const int n = knots.dof;
   const ShootingEquations equations(problem, knots, options.steps);
-  if (!can_begin(equations, knots)) return {};
+  std::vector<Beginning> beginnings = begin(equations, knots);
+  if (beginnings.empty()) return {};
   ceres::Problem joined;
   for (int i = 0; i < knots.segments; ++i) {
     double* z = knots.at(i);
-    auto* jump = new Jump(equations, i);
+    auto* jump = new Jump(equations, i, std::move(beginnings[static_cast<std::size_t>(i)]));
     if (i + 1 == knots.segments) {
       joined.AddResidualBlock(jump, nullptr, z, z + n);
     } else {
