@@ -17,9 +17,8 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kTolerance = 1e-10;  // of every point at its end,
 constexpr double kMagnified = 1e-8;   // and what conditioning makes of it in p0
-// Of a branch point: Newton's method stops as near to one as the singular Jacobian lets it. Where the
-// determinant touches zero it was seen to be 1.3e-7 away.
-constexpr double kBranchPoint = 4e-7;
+// Of a branch point: Newton's method stops as near to one as the singular Jacobian lets it.
+constexpr double kBranchPoint = 1e-10;
 
 Geodesic geodesic_of(const BoundaryValueProblem& problem, int rank = 1) {
   GeodesicOptions options;

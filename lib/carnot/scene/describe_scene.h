@@ -50,8 +50,8 @@ const char* kind_of() {
   }
 }
 
-// The scene's own description, and its kind. A scene without a name is called like its type, coordinates that
-// are not described are called q1, ..., qn.
+// The scene's own description, and its kind. A scene without a name is called like its type,
+// coordinates that are not described are called q1, ..., qn.
 template <class Scene>
 SceneInfo describe_scene(const Scene& scene) {
   SceneInfo info;
