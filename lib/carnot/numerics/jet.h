@@ -246,8 +246,8 @@ Jet<T, N> cos(const Jet<T, N>& x) {
 template <class T, int N>
 Jet<T, N> tan(const Jet<T, N>& x) {
   using std::tan;
-  const T slope = tan(x.a);
-  return Jet<T, N>::chain(slope, T(1) + slope * slope, x);
+  const T value = tan(x.a);
+  return Jet<T, N>::chain(value, T(1) + value * value, x);
 }
 template <class T, int N>
 Jet<T, N> asin(const Jet<T, N>& x) {

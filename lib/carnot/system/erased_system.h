@@ -26,7 +26,7 @@ class ErasedSystem {
   static constexpr int kDof = n;
   static constexpr int kAlgebraic = kMostAlgebraic * n;
   static constexpr int kMultipliers = kMostAlgebraic * n;
-  static constexpr bool kAutonomous = false;  // it may be: autonomous() tells
+  static constexpr bool kAutonomous = false;  // it may be; the kernels do not ask
   static constexpr bool kPacks = true;
   using Configuration = Vector<double, n>;
   using Point = Vector<double, 2 * n>;
@@ -36,7 +36,6 @@ class ErasedSystem {
   ErasedSystem(const void* system, const SystemFunctions& functions)
       : system_(system), functions_(&functions) {}
 
-  [[nodiscard]] bool autonomous() const { return functions_->autonomous; }
   [[nodiscard]] int algebraic_count() const { return functions_->algebraic; }
   [[nodiscard]] int multiplier_count() const { return functions_->multipliers; }
   // The solution y that a run begins with.

@@ -11,16 +11,6 @@
 
 namespace carnot {
 
-// Whether H does not depend on time.
-template <class System>
-bool is_autonomous(const System& system) {
-  if constexpr (IsErased<System>) {
-    return system.autonomous();
-  } else {
-    return System::kAutonomous;
-  }
-}
-
 // How many multipliers there are.
 template <class System>
 int multiplier_count(const System& system) {

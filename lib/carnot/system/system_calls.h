@@ -202,7 +202,6 @@ const SystemFunctions& functions_of() {
   static constexpr SystemFunctions kFunctions = {System::kDof,
                                                  System::kAlgebraic,
                                                  System::kMultipliers,
-                                                 System::kAutonomous,
                                                  PacksRates<System>,
                                                  calls::rate<System>,
                                                  calls::jacobian<System>,

@@ -52,7 +52,6 @@ struct SystemFunctions {
   int dof = 0;
   int algebraic = 0;
   int multipliers = 0;
-  bool autonomous = true;
   bool packs = false;  // rates run side by side in registers
 
   // Solves H_y = 0 from y, which is the branch and the warm start, and sets y and z_dot.
