@@ -56,18 +56,18 @@ TEST(Dense, Products) {
 
 TEST(Dense, InverseOnlyWhereRegular) {
   const SmallMatrix a = regular(5);
-  const auto inverse = small_inverse_if_regular(a, 1e-11);
+  const auto inverse = inverse_if_regular(a, 1e-11);
   ASSERT_TRUE(inverse);
   expect_equal(*inverse * a, MatrixXd::Identity(5, 5));
-  SmallMatrix singular = a;
+  MatrixXd singular = a;
   singular.col(3) = singular.col(1);
-  EXPECT_FALSE(small_inverse_if_regular(singular, 1e-11));
+  EXPECT_FALSE(inverse_if_regular(singular, 1e-11));
   // Just above and just below the threshold.
-  SmallMatrix nearly = SmallMatrix::Identity(2, 2);
+  MatrixXd nearly = MatrixXd::Identity(2, 2);
   nearly(1, 1) = 1.01e-6;
-  EXPECT_TRUE(small_inverse_if_regular(nearly, 1e-6));
+  EXPECT_TRUE(inverse_if_regular(nearly, 1e-6));
   nearly(1, 1) = 0.99e-6;
-  EXPECT_FALSE(small_inverse_if_regular(nearly, 1e-6));
+  EXPECT_FALSE(inverse_if_regular(nearly, 1e-6));
 }
 
 TEST(Dense, DeterminantBySignAndSize) {
@@ -99,7 +99,7 @@ TEST(Dense, QrFactorsAndTheirBasis) {
   expect_equal(factors.q * factors.r, columns);
   expect_equal(orthonormal(columns), factors.q);
   const MatrixXd right = random_matrix(3, 2, 4);
-  expect_equal(factors.r * solve_upper(factors.r, right), right);
+  expect_equal(factors.r * lu_solve(factors.r, right), right);
 }
 
 TEST(Dense, KernelOfOneRowTooFew) {

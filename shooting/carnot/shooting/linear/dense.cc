@@ -1,11 +1,14 @@
 #include "carnot/shooting/linear/dense.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <Eigen/SVD>
+#include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
+
+#include "carnot/numerics/lu.h"
 
 namespace carnot::internal {
 
@@ -16,81 +19,154 @@ MatrixXd product(const MatrixXd& a, const MatrixXd& b) { return a * b; }
 
 MatrixXd transposed_product(const MatrixXd& a, const MatrixXd& b) { return a.transpose() * b; }
 
-VectorXd lu_solve(const MatrixXd& a, const VectorXd& b) { return a.partialPivLu().solve(b); }
+namespace {
 
-MatrixXd lu_inverse(const MatrixXd& a) { return a.partialPivLu().inverse(); }
+// Row by row, as eliminate() takes them.
+template <class M>
+using Rows = Eigen::Matrix<double,
+                           Eigen::Dynamic,
+                           Eigen::Dynamic,
+                           Eigen::RowMajor,
+                           M::MaxRowsAtCompileTime,
+                           M::MaxColsAtCompileTime>;
 
-SmallVector small_lu_solve(const SmallMatrix& a, const SmallVector& b) {
-  return a.partialPivLu().solve(b);
+// A^-1 B; NaN where A is singular.
+template <class M>
+Rows<M> eliminate(Rows<M> a, Rows<M> b) {
+  const int size = static_cast<int>(a.rows());
+  if (!carnot::lu_solve(size, a.data(), static_cast<int>(b.cols()), b.data())) {
+    b.setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  return b;
 }
 
-SmallMatrix small_lu_inverse(const SmallMatrix& a) { return a.partialPivLu().inverse(); }
+// det of the permutations of a decomposition.
+template <class Lu>
+bool permutes_oddly(const Lu& lu) {
+  return (lu.permutationP().determinant() < 0) != (lu.permutationQ().determinant() < 0);
+}
 
-std::optional<SmallMatrix> small_inverse_if_regular(const SmallMatrix& a, double threshold) {
-  Eigen::FullPivLU<SmallMatrix> lu(a);
+}  // namespace
+
+MatrixXd lu_solve(const MatrixXd& a, const MatrixXd& b) { return eliminate<MatrixXd>(a, b); }
+
+MatrixXd lu_inverse(const MatrixXd& a) {
+  return eliminate<MatrixXd>(a, MatrixXd::Identity(a.rows(), a.rows()));
+}
+
+SmallVector small_lu_solve(const SmallMatrix& a, const SmallVector& b) {
+  const SmallMatrix x = eliminate<SmallMatrix>(a, b);
+  return x.col(0);
+}
+
+SmallMatrix small_lu_inverse(const SmallMatrix& a) {
+  return eliminate<SmallMatrix>(a, SmallMatrix::Identity(a.rows(), a.rows()));
+}
+
+std::optional<MatrixXd> inverse_if_regular(const MatrixXd& a, double threshold) {
+  Eigen::FullPivLU<MatrixXd> lu(a);
   lu.setThreshold(threshold);
   if (!lu.isInvertible()) return std::nullopt;
-  return SmallMatrix(lu.inverse());
+  return lu_inverse(a);
 }
 
 Determinant determinant_of(const MatrixXd& a) {
-  const Eigen::PartialPivLU<MatrixXd> lu(a);
+  const Eigen::FullPivLU<MatrixXd> lu(a);
   const VectorXd pivots = lu.matrixLU().diagonal();
-  const bool negative =
-      ((pivots.array() < 0).count() % 2 == 1) != (lu.permutationP().determinant() < 0);
+  const bool negative = ((pivots.array() < 0).count() % 2 == 1) != permutes_oddly(lu);
   return {negative ? -1 : 1, pivots.array().abs().log().sum()};
 }
 
 double argument_of_determinant(const MatrixXd& a, const MatrixXd& b) {
-  const Eigen::MatrixXcd sum =
-      a.cast<std::complex<double>>() + std::complex<double>(0, 1) * b.cast<std::complex<double>>();
-  return std::arg(sum.determinant());
+  Eigen::MatrixXcd sum(a.rows(), a.cols());
+  sum.real() = a;
+  sum.imag() = b;
+  return std::arg(Eigen::FullPivLU<Eigen::MatrixXcd>(sum).determinant());
 }
 
-MatrixXd orthonormal(const MatrixXd& columns) {
-  const Eigen::HouseholderQR<MatrixXd> qr(columns);
-  return qr.householderQ() * MatrixXd::Identity(columns.rows(), columns.cols());
+namespace {
+
+// Of all of Eigen's decompositions into an orthogonal and a triangular factor, the one for all
+// purposes here: the exchange of columns costs little.
+using Qr = Eigen::ColPivHouseholderQR<MatrixXd>;
+
+// Q X, a reflection at a time. Eigen's own product takes them in blocks, for matrices of hundreds
+// of rows, and takes the compiler as long as three decompositions.
+MatrixXd times_q(const Qr& qr, MatrixXd x) {
+  VectorXd work(x.cols());
+  for (Eigen::Index k = qr.hCoeffs().size() - 1; k >= 0; --k) {
+    const Eigen::Index rest = qr.rows() - k;
+    x.bottomRows(rest).applyHouseholderOnTheLeft(
+        qr.matrixQR().col(k).tail(rest - 1), qr.hCoeffs()[k], work.data());
+  }
+  return x;
 }
+
+MatrixXd basis_of(const Qr& qr) { return times_q(qr, MatrixXd::Identity(qr.rows(), qr.cols())); }
+
+// R of A = Q R, as many rows as columns.
+MatrixXd r_of(const Qr& qr) {
+  const MatrixXd triangle = qr.matrixQR().topRows(qr.cols()).triangularView<Eigen::Upper>();
+  return triangle * qr.colsPermutation().transpose();
+}
+
+using Svd = Eigen::JacobiSVD<MatrixXd, Eigen::NoQRPreconditioner>;
+
+// Square matrices with the singular values and right singular vectors of A: R of its QR factors,
+// or A with rows of zeros.
+MatrixXd squared(const MatrixXd& a) {
+  if (a.rows() > a.cols()) return r_of(Qr(a));
+  MatrixXd padded = MatrixXd::Zero(a.cols(), a.cols());
+  padded.topRows(a.rows()) = a;
+  return padded;
+}
+
+}  // namespace
+
+MatrixXd orthonormal(const MatrixXd& columns) { return basis_of(Qr(columns)); }
 
 QrFactors qr_factors(const MatrixXd& columns) {
-  const Eigen::HouseholderQR<MatrixXd> qr(columns);
-  return {qr.householderQ() * MatrixXd::Identity(columns.rows(), columns.cols()),
-          qr.matrixQR().topRows(columns.cols()).triangularView<Eigen::Upper>()};
-}
-
-MatrixXd solve_upper(const MatrixXd& r, const MatrixXd& b) {
-  return r.triangularView<Eigen::Upper>().solve(b);
+  const Qr qr(columns);
+  return {basis_of(qr), r_of(qr)};
 }
 
 std::optional<VectorXd> kernel_line(const MatrixXd& rows, double full_rank) {
-  const Eigen::ColPivHouseholderQR<MatrixXd> qr(rows.transpose());
+  const Qr qr(rows.transpose());
   const VectorXd pivots = qr.matrixQR().diagonal().cwiseAbs();
   if (!(pivots.minCoeff() > full_rank * pivots.maxCoeff())) return std::nullopt;
   const auto size = rows.cols();
-  return VectorXd(qr.householderQ() * VectorXd::Unit(size, size - 1));
+  return VectorXd(times_q(qr, VectorXd::Unit(size, size - 1)));
 }
 
+// The eigenvalues of A + c, with c = |A|, are positive: they are its singular values.
 SymmetricEigen symmetric_eigen(const MatrixXd& a) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(a);
-  return {solver.eigenvalues(), solver.eigenvectors()};
+  const double shift = a.norm();
+  const RightSingular shifted = right_singular(a + shift * MatrixXd::Identity(a.rows(), a.rows()));
+  return {shifted.values.reverse().array() - shift, shifted.vectors.rowwise().reverse()};
 }
 
 VectorXd singular_values(const MatrixXd& a) {
-  return Eigen::JacobiSVD<MatrixXd>(a).singularValues();
+  return right_singular(a).values.head(std::min(a.rows(), a.cols()));
 }
 
 RightSingular right_singular(const MatrixXd& a) {
-  const Eigen::JacobiSVD<MatrixXd> svd(a, Eigen::ComputeFullV);
+  if (!a.allFinite()) {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    return {VectorXd::Constant(a.cols(), kNan), MatrixXd::Constant(a.cols(), a.cols(), kNan)};
+  }
+  const Svd svd(squared(a), Eigen::ComputeFullV);
   return {svd.singularValues(), svd.matrixV()};
 }
 
 VectorXd least_squares(const MatrixXd& a, const VectorXd& b, double threshold) {
-  Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
-  decomposition.setThreshold(threshold);
-  decomposition.compute(a);
-  // A matrix, since for a vector Eigen adds the terms in another order where A lacks rank.
-  const MatrixXd x = decomposition.solve(b);
-  return x.col(0);
+  const RightSingular right = right_singular(a);
+  const MatrixXd images = product(a, right.vectors);  // orthogonal columns, as long as the values
+  VectorXd parts = VectorXd::Zero(a.cols());
+  for (Eigen::Index j = 0; j < a.cols(); ++j) {
+    if (!(right.values[j] > threshold * right.values[0])) break;
+    parts[j] = images.col(j).dot(b) / images.col(j).squaredNorm();
+  }
+  return right.vectors.lazyProduct(parts);
 }
 
 }  // namespace carnot::internal

@@ -21,15 +21,15 @@ using SmallMatrix =
 Eigen::MatrixXd product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-// A^-1 b and A^-1, by LU factors with partial pivoting.
-Eigen::VectorXd lu_solve(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
+// A^-1 B and A^-1, by elimination with partial pivoting.
+Eigen::MatrixXd lu_solve(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 Eigen::MatrixXd lu_inverse(const Eigen::MatrixXd& a);
 // The same without an allocation.
 SmallVector small_lu_solve(const SmallMatrix& a, const SmallVector& b);
 SmallMatrix small_lu_inverse(const SmallMatrix& a);
 // A^-1 by LU factors with full pivoting. Nothing where a pivot is below `threshold` times the
 // largest one.
-std::optional<SmallMatrix> small_inverse_if_regular(const SmallMatrix& a, double threshold);
+std::optional<Eigen::MatrixXd> inverse_if_regular(const Eigen::MatrixXd& a, double threshold);
 
 // det A by its sign and by the logarithm of its size.
 struct Determinant {
@@ -42,14 +42,12 @@ double argument_of_determinant(const Eigen::MatrixXd& a, const Eigen::MatrixXd& 
 
 // An orthonormal basis of the space that the columns span, as many columns, by Householder's QR.
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns);
-// The same basis Q with the upper triangle R: columns = Q R.
+// The same basis Q, and the square R of columns = Q R, an upper triangle with its columns permuted.
 struct QrFactors {
   Eigen::MatrixXd q;
   Eigen::MatrixXd r;
 };
 QrFactors qr_factors(const Eigen::MatrixXd& columns);
-// R^-1 B of an upper triangle R.
-Eigen::MatrixXd solve_upper(const Eigen::MatrixXd& r, const Eigen::MatrixXd& b);
 // The direction, of length 1, that n rows of length n + 1 map to zero. Nothing where the least
 // pivot of QR factors with column pivoting is not above `full_rank` times the largest one.
 std::optional<Eigen::VectorXd> kernel_line(const Eigen::MatrixXd& rows, double full_rank);
@@ -61,16 +59,18 @@ struct SymmetricEigen {
 };
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a);
 
-// Singular values, descending, and the right singular vectors as columns in the same order.
-Eigen::VectorXd singular_values(const Eigen::MatrixXd& a);
+// Singular values, descending, and the right singular vectors as columns in the same order, as many
+// as A has columns: where it has fewer rows, the last values are zeros.
 struct RightSingular {
   Eigen::VectorXd values;
   Eigen::MatrixXd vectors;
 };
 RightSingular right_singular(const Eigen::MatrixXd& a);
+// As many as the lesser of rows and columns.
+Eigen::VectorXd singular_values(const Eigen::MatrixXd& a);
 
-// The x of least norm that minimises |A x - b|, where pivots below `threshold` times the largest
-// one count as zero; by a complete orthogonal decomposition.
+// The x of least norm that minimises |A x - b|, where singular values below `threshold` times the
+// largest one count as zero.
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, double threshold);
 
 }  // namespace carnot::internal

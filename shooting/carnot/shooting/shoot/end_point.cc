@@ -43,7 +43,7 @@ Eigen::MatrixXd kernel_of(const Units& units, const Eigen::MatrixXd& raw, double
   const RightSingular still = right_singular(plane.q.topRows(n));
   const auto nullity = (still.values.array() <= tolerance).count();
   if (nullity == 0) return {n, 0};
-  return orthonormal(units.momenta(solve_upper(plane.r, still.vectors.rightCols(nullity))));
+  return orthonormal(units.momenta(lu_solve(plane.r, still.vectors.rightCols(nullity))));
 }
 
 double correct(const BoundaryValueProblem& problem,

@@ -26,7 +26,7 @@ EndPointModel::EndPointModel(const BoundaryValueProblem& problem, const Vector& 
   };
   jacobian_ = jacobian_at(Vector::Zero(n));
   if (!jacobian_.allFinite()) return;
-  const auto inverse = small_inverse_if_regular(jacobian_, kSingular);
+  const auto inverse = inverse_if_regular(jacobian_, kSingular);
   if (!inverse) return;
   inverse_ = *inverse;
   const double h = kAside * p0.cwiseAbs().maxCoeff();
