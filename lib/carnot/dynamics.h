@@ -16,6 +16,9 @@
 
 namespace carnot {
 
+struct SystemFunctions;
+struct TranscriptionFunctions;
+
 // H, velocity and multipliers at one phase point.
 struct PointValues {
   RateStatus status = RateStatus::kOk;
@@ -40,8 +43,11 @@ struct Dynamics {
   int order = 0;
   bool symplectic = true;
   SceneInfo info;
-  std::shared_ptr<const void> system;  // what the calls take, and the kernel's, too
-  Kernel kernel;                       // the method
+  std::shared_ptr<const void> system;          // what the calls take, and the kernel's, too
+  const SystemFunctions* functions = nullptr;  // of the system,
+  const TranscriptionFunctions* transcription =
+      nullptr;    // and of its transcription, if there is one
+  Kernel kernel;  // the method
 
   // Advances z in place; on failure z is that of time_reached. No allocation.
   [[nodiscard]] FlowReport flow(const StepPlan& plan, double* z) const {
@@ -87,9 +93,7 @@ struct Dynamics {
   }
   // H, q' and lambda at (t, q, p).
   PointValues evaluate(
-      double t, const double* q, const double* p, double* q_dot, double* lambda) const {
-    return calls.evaluate(system.get(), t, q, p, q_dot, lambda);
-  }
+      double t, const double* q, const double* p, double* q_dot, double* lambda) const;
   // Vanishes where the coordinates are singular; 1 for a scene where they nowhere are. A path from
   // one sign to the other passes such a point.
   [[nodiscard]] double chart(const double* q) const {
@@ -127,28 +131,22 @@ struct Dynamics {
   }
 
   // Whether there is a direct midpoint transcription; k stands for `transcribed` in what follows.
-  [[nodiscard]] bool has_transcription() const { return calls.midpoint != nullptr; }
+  [[nodiscard]] bool has_transcription() const { return transcription != nullptr; }
   // Terms of one midpoint interval at (qm, v): r (n), c (k), V (1), stacked; jacobian row-major
   // (n + k + 1) x 2n with respect to (qm, v), may be null.
   [[nodiscard]] bool midpoint(const double* qm,
                               const double* v,
                               double* terms,
-                              double* jacobian) const {
-    return calls.midpoint(system.get(), qm, v, terms, jacobian);
-  }
+                              double* jacobian) const;
   // Gradient and Hessian of the discrete Lagrangian F_d with respect to x = (q0, q1, lambda), of
   // length 2n + k: the discrete momenta are p0 = -gradient[0..n), p1 = gradient[n..2n). The Hessian
   // (symmetric, (2n + k)^2) may be null.
-  void discrete_lagrangian(double h, const double* x, double* gradient, double* hessian) const {
-    calls.discrete_lagrangian(system.get(), h, x, gradient, hessian);
-  }
+  void discrete_lagrangian(double h, const double* x, double* gradient, double* hessian) const;
   // The multipliers of the transcription at a phase point.
-  void midpoint_multipliers(const double* q, const double* p, double* lambda) const {
-    calls.midpoint_multipliers(system.get(), q, p, lambda);
-  }
+  void midpoint_multipliers(const double* q, const double* p, double* lambda) const;
 
   struct Calls {
-    PointValues (*evaluate)(const void*, double, const double*, const double*, double*, double*);
+    Regularity (*regularity)(const void*, double, const double*, const double*);
     double (*chart)(const void*, const double*);
     double (*momentum)(const void*, double, const double*, double*, const double*, double*);
     std::shared_ptr<const void> (*branch)(
@@ -156,9 +154,6 @@ struct Dynamics {
     HolonomicResiduals (*holonomic_residuals)(const void*, double, const double*);
     bool (*project_on_manifold)(const void*, double, double*);
     bool (*tangent_projector)(const void*, double, const double*, double*);
-    bool (*midpoint)(const void*, const double*, const double*, double*, double*);
-    void (*discrete_lagrangian)(const void*, double, const double*, double*, double*);
-    void (*midpoint_multipliers)(const void*, const double*, const double*, double*);
   };
   Calls calls{};
 };

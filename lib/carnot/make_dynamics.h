@@ -38,30 +38,16 @@ constexpr std::string_view default_method() {
 
 namespace dynamics_calls {
 
+// At the point where the rate is evaluated, or where that has failed.
 template <class B>
-PointValues evaluate(const void* opaque,
-                     double t,
-                     const double* q_in,
-                     const double* p_in,
-                     double* q_dot,
-                     double* lambda_out) {
+Regularity regularity(const void* opaque, double t, const double* q_in, const double* p_in) {
   const B& bound = B::from(opaque);
   const Vector<double, B::n> q = view<B::n>(q_in);
   const Vector<double, B::n> p = view<B::n>(p_in);
   Vector<double, B::m> y = bound.branch;
-  Vector<double, B::k> lambda = Vector<double, B::k>::Zero();
   Rate<double, B::n> rate;
-  PointValues values;
-  values.status = bound.system.rate(t, q, p, y, rate);
-  if constexpr (HasRegularity<typename B::System>) {
-    values.regularity = bound.system.regularity(t, q, p, y);
-  }
-  if (values.status != RateStatus::kOk) return values;
-  values.status = bound.system.multipliers(t, q, p, y, lambda);
-  values.hamiltonian = bound.system.hamiltonian(t, q, p, y);
-  view<B::n>(q_dot) = rate.q_dot;
-  view<B::k>(lambda_out) = lambda;
-  return values;
+  (void)bound.system.rate(t, q, p, y, rate);
+  return bound.system.regularity(t, q, p, y);
 }
 
 template <class B>
@@ -139,9 +125,12 @@ std::shared_ptr<const void> branch(
   return other;
 }
 
-// All but the kernel. B is SystemOnBranch.
+// All but the kernel. B is SystemOnBranch; `functions` are those of its system.
 template <class Scene, class B>
-Dynamics bind(const Scene& scene, const Method& method, B bound) {
+Dynamics bind(const Scene& scene,
+              const Method& method,
+              B bound,
+              const SystemFunctions& functions = pointwise_functions_of<typename B::System>()) {
   using System = typename B::System;
   Dynamics dynamics;
   dynamics.dof = B::n;
@@ -152,9 +141,10 @@ Dynamics bind(const Scene& scene, const Method& method, B bound) {
   dynamics.symplectic = method.symplectic;
   dynamics.info = describe_scene(scene);
   dynamics.system = std::make_shared<const B>(std::move(bound));
-  dynamics.calls.evaluate = evaluate<B>;
+  dynamics.functions = &functions;
   dynamics.calls.momentum = momentum<B>;
   if constexpr (HasChart<Scene>) dynamics.calls.chart = chart<B>;
+  if constexpr (HasRegularity<System>) dynamics.calls.regularity = regularity<B>;
   if constexpr (HasBranches<System>) dynamics.calls.branch = branch<B>;
   if constexpr (HasHolonomic<Scene>) {
     dynamics.holonomic = Scene::kHolonomic;
@@ -165,10 +155,8 @@ Dynamics bind(const Scene& scene, const Method& method, B bound) {
   }
   if constexpr (IsTranscribed<System>::value) {
     if (dynamics.forced > 0) return dynamics;
-    dynamics.transcribed = kTranscribed<B>;
-    dynamics.calls.midpoint = midpoint<B>;
-    dynamics.calls.midpoint_multipliers = midpoint_multipliers<B>;
-    dynamics.calls.discrete_lagrangian = discrete_lagrangian<B>;
+    dynamics.transcription = &transcription_of<B>();
+    dynamics.transcribed = dynamics.transcription->constraints;
   }
   return dynamics;
 }
@@ -197,8 +185,9 @@ const Method& method_for(const Scene& scene, std::string_view name) {
 template <class Scene>
 Dynamics with_compiled_kernel(const Scene& scene, const Method& method) {
   using System = decltype(make_system(scene));
-  Dynamics dynamics = bind(scene, method, SystemOnBranch<System>{make_system(scene)});
-  dynamics.kernel = make_kernel(method, periods_of(dynamics.info), functions_of<System>());
+  const SystemFunctions& functions = functions_of<System>();
+  Dynamics dynamics = bind(scene, method, SystemOnBranch<System>{make_system(scene)}, functions);
+  dynamics.kernel = make_kernel(method, periods_of(dynamics.info), functions);
   return dynamics;
 }
 

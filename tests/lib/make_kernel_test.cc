@@ -61,6 +61,23 @@ Pair driven_pendulum() {
   return {make_dynamics(scene), make_inlined_dynamics(scene), {0.3, 0.1}, 1};
 }
 
+// A unicycle that does not say that its heading is an angle.
+struct FarHeading {
+  static constexpr int kDof = 3;
+  static constexpr int kMultipliers = 1;
+
+  template <class T>
+  [[nodiscard]] Matrix<T, 3, 3> mass(const Vector<T, 3>& /*q*/) const {
+    return diagonal<T>(1, 1, 1);
+  }
+  template <class T>
+  [[nodiscard]] Matrix<T, 1, 3> constraints(const Vector<T, 3>& q) const {
+    Matrix<T, 1, 3> g;
+    g << sin(q[2]), -cos(q[2]), T(0);
+    return g;
+  }
+};
+
 class MakeKernel : public ::testing::TestWithParam<Pair (*)()> {
  protected:
   const Pair pair_ = GetParam()();
@@ -139,6 +156,19 @@ TEST(MakeKernelFailure, SaysWhyARateFails) {
   const FlowReport report = dynamics.flow(StepPlan::equal(0, 1, 4), z.data());
   EXPECT_FALSE(report.completed());
   EXPECT_EQ(report.last.rate, RateStatus::kNotFinite);
+}
+
+// Rates go on where an angle without a period is far away; their derivatives do not.
+TEST(MakeKernelFailure, SaysThatAnAngleIsTooFarForTangents) {
+  const Dynamics dynamics = make_dynamics(FarHeading{});
+  const std::vector<double> start{0, 0, 2e6, 1, 0.5, 0.2};
+  std::vector<double> z = start;
+  EXPECT_TRUE(dynamics.flow(StepPlan::equal(0, 1, 4), z.data()).completed());
+  z = start;
+  std::vector<double> m(36);
+  const FlowReport report = dynamics.tangent_flow(StepPlan::equal(0, 1, 4), z.data(), m.data());
+  EXPECT_FALSE(report.completed());
+  EXPECT_EQ(report.last.rate, RateStatus::kFarAngle);
 }
 
 TEST(MakeKernelBatch, AdvancesManyAsOne) {

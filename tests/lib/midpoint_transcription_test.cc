@@ -54,10 +54,13 @@ struct Calls {
   static const Calls& from(const void* opaque) { return *static_cast<const Calls*>(opaque); }
 
   bool midpoint(const double* qm, const double* v, double* terms, double* jacobian) const {
-    return dynamics_calls::midpoint<Calls>(this, qm, v, terms, jacobian);
+    return midpoint_terms(functions(), this, qm, v, terms, jacobian);
   }
   void discrete_lagrangian(double h, const double* x, double* gradient, double* hessian) const {
-    dynamics_calls::discrete_lagrangian<Calls>(this, h, x, gradient, hessian);
+    carnot::discrete_lagrangian(functions(), this, h, x, gradient, hessian);
+  }
+  static const TranscriptionFunctions& functions() {
+    return dynamics_calls::transcription_of<Calls>();
   }
 };
 
@@ -159,7 +162,7 @@ TYPED_TEST(MidpointDerivativesTest, GradientAgreesWithDifferences) {
     const Vector<double, n> v = (x.template segment<n>(n) - x.template head<n>()) / h;
     const Vector<double, k> lambda = x.template tail<k>();
     double value = this->system_.lagrangian(q, v) - lambda.dot(this->system_.constraint(q, v));
-    if constexpr (HasGauge<std::decay_t<decltype(this->system_.scene())>>) {
+    if constexpr (dynamics_calls::HasGauge<std::decay_t<decltype(this->system_.scene())>>) {
       value -= 0.5 * lambda.dot(this->system_.scene().gauge(q) * lambda);
     }
     return Vector<double, 1>(Vector<double, 1>::Constant(h * value));
@@ -204,7 +207,7 @@ TYPED_TEST(MidpointDerivativesTest, DerivativeByTheMultipliersIsTheConstraint) {
   const Vector<double, n> qm = 0.5 * (q0 + q1);
   const Vector<double, n> v = (q1 - q0) / h;
   Vector<double, k> g = this->system_.constraint(qm, v);
-  if constexpr (HasGauge<std::decay_t<decltype(this->system_.scene())>>) {
+  if constexpr (dynamics_calls::HasGauge<std::decay_t<decltype(this->system_.scene())>>) {
     g += this->system_.scene().gauge(qm) * x.template tail<k>();
   }
   EXPECT_LE((this->gradient(h, x).template tail<k>() + h * g).cwiseAbs().maxCoeff(), 64 * kEps);

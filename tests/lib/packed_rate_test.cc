@@ -103,6 +103,8 @@ TYPED_TEST(PackedRateTest, JacobianAgreesLaneByLane) {
       for (int c = 0; c < 2 * n; ++c) packed(r, c) = jacobian[(2 * n * r + c) * kLanes + l];
     }
     EXPECT_LE(test::relative_distance(packed, Square(weights[l] * expected)), kRoundOff);
+    ASSERT_TRUE(jacobian_in_pack(system, 0.0, point.data(), packed.data()));
+    EXPECT_LE(test::relative_distance(packed, expected), kRoundOff);
   }
   for (int k = 0; k < 2 * n; ++k) z[k * kLanes + 1] = std::nan("");
   EXPECT_FALSE(

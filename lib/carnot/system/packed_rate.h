@@ -43,49 +43,118 @@ template <int W, class System, class Lane = typename pack_lane::Widest<W>::type>
   }
 }
 
-// d(z_dot)/dz at W points side by side: entry (r, c) of all is row 2n r + c of `jacobian`, times
-// the row `weights`. The rate on Jets of packs, kDirections columns at a time: Jets of all 2n
-// directions do not fit the registers, and take the compiler several times as long. False when some
-// lane fails.
+// Directions that are differentiated at once: Jets of all 2n do not fit the registers, and take the
+// compiler several times as long.
+template <int n>
+inline constexpr int kPackedDirections = std::min(3, 2 * n);
+
+// The derivatives of z_dot at W points side by side in some directions, that of each lane its own:
+// direction d is the 2n rows seeds[d], and derivative r in that direction, times the row `weights`,
+// becomes row r stride + d of `slopes`. The rate on Jets of packs. False when some lane fails.
 template <int W, class System>
-[[gnu::flatten, gnu::noinline]] bool packed_jacobian(const System& system,
-                                                     const double* t,
-                                                     const double* z,
-                                                     const double* weights,
-                                                     double* jacobian) {
+[[gnu::flatten, gnu::noinline]] bool packed_slopes(
+    const System& system,
+    const double* t,
+    const double* z,
+    const std::array<const double*, kPackedDirections<System::kDof>>& seeds,
+    const double* weights,
+    int stride,
+    double* slopes) {
+  constexpr int n = System::kDof;
+  constexpr int kDirections = kPackedDirections<n>;
+  using P = Pack<W>;
+  using J = Jet<P, kDirections>;
+  Vector<J, n> q;
+  Vector<J, n> p;
+  for (int i = 0; i < n; ++i) {
+    q[i].a = P::load(z + i * W);
+    p[i].a = P::load(z + (n + i) * W);
+    for (int d = 0; d < kDirections; ++d) {
+      q[i].v[d] = P::load(seeds[d] + i * W);
+      p[i].v[d] = P::load(seeds[d] + (n + i) * W);
+    }
+  }
+  Vector<J, System::kAlgebraic> y;
+  Rate<J, n> rate;
+  if (system.rate(J(P::load(t)), q, p, y, rate) != RateStatus::kOk) return false;
+  const P weight = P::load(weights);
+  for (int i = 0; i < n; ++i) {
+    for (int d = 0; d < kDirections; ++d) {
+      (weight * rate.q_dot[i].v[d]).store(slopes + (i * stride + d) * W);
+      (weight * rate.p_dot[i].v[d]).store(slopes + ((n + i) * stride + d) * W);
+    }
+  }
+  return true;
+}
+
+// d(z_dot)/dz at W points side by side: entry (r, c) of all is row 2n r + c of `jacobian`, times
+// the row `weights`. False when some lane fails.
+template <int W, class System>
+bool packed_jacobian(const System& system,
+                     const double* t,
+                     const double* z,
+                     const double* weights,
+                     double* jacobian) {
   if constexpr (IsErased<System>) {
     static_assert(W == 8);
     return system.packed_jacobian(t, z, weights, jacobian);
   } else {
-    constexpr int n = System::kDof;
-    constexpr int kDirections = 3;
-    using P = Pack<W>;
-    using J = Jet<P, kDirections>;
-    const P weight = P::load(weights);
-    for (int first = 0; first < 2 * n; first += kDirections) {
-      Vector<J, n> q;
-      Vector<J, n> p;
-      for (int i = 0; i < n; ++i) {
-        q[i].a = P::load(z + i * W);
-        p[i].a = P::load(z + (n + i) * W);
-        for (int d = 0; d < kDirections; ++d) {
-          q[i].v[d] = P(first + d == i ? 1 : 0);
-          p[i].v[d] = P(first + d == n + i ? 1 : 0);
-        }
-      }
-      Vector<J, System::kAlgebraic> y;
-      Rate<J, n> rate;
-      if (system.rate(J(P::load(t)), q, p, y, rate) != RateStatus::kOk) return false;
-      for (int d = 0; d < kDirections && first + d < 2 * n; ++d) {
-        double* const column = jacobian + (first + d) * W;
-        for (int r = 0; r < n; ++r) {
-          (weight * rate.q_dot[r].v[d]).store(column + 2 * n * r * W);
-          (weight * rate.p_dot[r].v[d]).store(column + 2 * n * (n + r) * W);
-        }
-      }
+    constexpr int size = 2 * System::kDof;
+    constexpr int kDirections = kPackedDirections<System::kDof>;
+    // Row `size` is one and all others are zero, so that the unit vectors are windows on them.
+    alignas(64) static constexpr auto kUnits = [] {
+      std::array<double, 2 * size * W> rows{};
+      for (int l = 0; l < W; ++l) rows[size * W + l] = 1;
+      return rows;
+    }();
+    for (int next = 0; next < size; next += kDirections) {
+      const int first = std::min(next, size - kDirections);
+      std::array<const double*, kDirections> seeds;
+      for (int d = 0; d < kDirections; ++d) seeds[d] = kUnits.data() + (size - first - d) * W;
+      if (!packed_slopes<W>(system, t, z, seeds, weights, size, jacobian + first * W)) return false;
     }
     return true;
   }
+}
+
+// d(z_dot)/dz at one point, column by column: each lane of a pack takes some of the columns.
+template <class System>
+bool jacobian_in_pack(const System& system, double t, const double* z, double* jacobian) {
+  constexpr int W = 8;
+  constexpr int size = 2 * System::kDof;
+  constexpr int kDirections = kPackedDirections<System::kDof>;
+  constexpr int kAtOnce = kDirections * W;
+  alignas(64) std::array<double, W> time;
+  alignas(64) std::array<double, W> weights;
+  alignas(64) std::array<double, size * W> points;
+  alignas(64) std::array<std::array<double, size * W>, kDirections> units;
+  alignas(64) std::array<double, size * kDirections * W> slopes;
+  std::array<const double*, kDirections> seeds;
+  for (int d = 0; d < kDirections; ++d) seeds[d] = units[d].data();
+  time.fill(t);
+  weights.fill(1);
+  for (int k = 0; k < size; ++k) std::fill_n(points.data() + k * W, W, z[k]);
+  for (int first = 0; first < size; first += kAtOnce) {
+    const int count = std::min(kAtOnce, size - first);
+    // Column first + c is direction c / W of lane c % W.
+    for (auto& unit : units) unit.fill(0);
+    for (int c = 0; c < count; ++c) units[c / W][(first + c) * W + c % W] = 1;
+    if (!packed_slopes<W>(system,
+                          time.data(),
+                          points.data(),
+                          seeds,
+                          weights.data(),
+                          kDirections,
+                          slopes.data())) {
+      return false;
+    }
+    for (int c = 0; c < count; ++c) {
+      for (int r = 0; r < size; ++r) {
+        jacobian[(first + c) * size + r] = slopes[(r * kDirections + c / W) * W + c % W];
+      }
+    }
+  }
+  return true;
 }
 
 // The same for columns first, ..., first + count - 1 of matrices with a column for each point, up

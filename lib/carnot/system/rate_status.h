@@ -13,6 +13,7 @@ enum class RateStatus {
   kNotIndexOne,      // H_yy is singular
   kNoSolution,       // Newton's method for H_y = 0 did not converge
   kNotFinite,        // a value is infinite or not a number
+  kFarAngle,         // the derivative of a rate at an angle beyond 1e6
 };
 
 // One line for a person: what failed and what it means.
@@ -33,6 +34,8 @@ constexpr std::string_view describe(RateStatus status) {
       return "no solution of H_y = 0 was found: start nearer to a branch, or try a smaller step";
     case RateStatus::kNotFinite:
       return "a value is infinite or not a number";
+    case RateStatus::kFarAngle:
+      return "an angle is beyond 1e6 rad, where derivatives end: give its coordinate a period";
   }
   return "";
 }

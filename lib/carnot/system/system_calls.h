@@ -65,14 +65,23 @@ RateStatus rate(const void* opaque, double t, const double* z, double* y, double
 
 template <class System>
 RateStatus jacobian(const void* opaque, double t, const double* z, const double* y, double* out) {
-  constexpr int size = 2 * System::kDof;
-  constexpr int m = System::kAlgebraic;
-  Matrix<double, size, size> a;
-  const Vector<double, size> at = view<size>(z);
-  const Vector<double, m> algebraic = view<m>(y);
-  const RateStatus status = phase_jacobian(system_of<System>(opaque), t, at, algebraic, a);
-  if (status == RateStatus::kOk) view<size * size>(out) = view<size * size>(a.data());
-  return status;
+  if constexpr (PacksRates<System>) {
+    if (jacobian_in_pack(system_of<System>(opaque), t, z, out)) return RateStatus::kOk;
+    // Why it fails, the rate itself can tell, but where it reaches farther than packs.
+    std::array<double, 2 * System::kDof> z_dot;
+    std::array<double, std::max(System::kAlgebraic, 1)> unused;
+    const RateStatus status = rate<System>(opaque, t, z, unused.data(), z_dot.data());
+    return status == RateStatus::kOk ? RateStatus::kFarAngle : status;
+  } else {
+    constexpr int size = 2 * System::kDof;
+    constexpr int m = System::kAlgebraic;
+    Matrix<double, size, size> a;
+    const Vector<double, size> at = view<size>(z);
+    const Vector<double, m> algebraic = view<m>(y);
+    const RateStatus status = phase_jacobian(system_of<System>(opaque), t, at, algebraic, a);
+    if (status == RateStatus::kOk) view<size * size>(out) = view<size * size>(a.data());
+    return status;
+  }
 }
 
 // Side by side in a pack, or one after the other where the formulas branch on values or iterate.
@@ -213,6 +222,24 @@ const SystemFunctions& functions_of() {
                                                  calls::measure<System>,
                                                  calls::measure_node<System>,
                                                  calls::branch<System>};
+  return kFunctions;
+}
+
+// The part of it that no kernel asks for: what is evaluated at a point.
+template <class System>
+const SystemFunctions& pointwise_functions_of() {
+  namespace calls = system_calls;
+  static constexpr SystemFunctions kFunctions = [] {
+    SystemFunctions functions;
+    functions.dof = System::kDof;
+    functions.algebraic = System::kAlgebraic;
+    functions.multipliers = System::kMultipliers;
+    functions.rate = calls::rate<System>;
+    functions.hamiltonian = calls::hamiltonian<System>;
+    functions.find_multipliers = calls::find_multipliers<System>;
+    functions.branch = calls::branch<System>;
+    return functions;
+  }();
   return kFunctions;
 }
 

@@ -55,33 +55,35 @@ struct SystemFunctions {
   bool packs = false;  // rates run side by side in registers
 
   // Solves H_y = 0 from y, which is the branch and the warm start, and sets y and z_dot.
-  RateStatus (*rate)(const void* system, double t, const double* z, double* y, double* z_dot);
+  RateStatus (*rate)(const void* system, double t, const double* z, double* y, double* z_dot) =
+      nullptr;
   // d(z_dot)/dz at the solution y, 2n x 2n, column by column.
   RateStatus (*jacobian)(
-      const void* system, double t, const double* z, const double* y, double* jacobian);
+      const void* system, double t, const double* z, const double* y, double* jacobian) = nullptr;
   // The rates of kErasedLanes points side by side. False where one of them fails.
-  bool (*rates)(const void* system, const double* t, const double* z, double* y, double* z_dot);
+  bool (*rates)(const void* system, const double* t, const double* z, double* y, double* z_dot) =
+      nullptr;
   // The Jacobians of as many points side by side: entry (r, c) is row 2n r + c, times the row
   // `weights`. False where that is not possible.
   bool (*jacobians)(const void* system,
                     const double* t,
                     const double* z,
                     const double* weights,
-                    double* jacobian);
+                    double* jacobian) = nullptr;
   // The fixed-point iteration on the stages of a step.
   StageReport (*iterate)(const void* system,
                          const StageData& data,
-                         const IterationLimits<double>& limits);
+                         const IterationLimits<double>& limits) = nullptr;
 
   double (*hamiltonian)(
-      const void* system, double t, const double* q, const double* p, const double* y);
+      const void* system, double t, const double* q, const double* p, const double* y) = nullptr;
   // lambda at a solution y.
   RateStatus (*find_multipliers)(const void* system,
                                  double t,
                                  const double* q,
                                  const double* p,
                                  const double* y,
-                                 double* lambda);
+                                 double* lambda) = nullptr;
   // At the first `count` of kErasedLanes points side by side, with velocities dq / weights.
   void (*measure)(const void* system,
                   int count,
@@ -90,11 +92,11 @@ struct SystemFunctions {
                   const double* z,
                   const double* dq,
                   const double* y,
-                  PointMeasures* out);
+                  PointMeasures* out) = nullptr;
   // y is the branch and the warm start, and the solution afterwards.
-  NodeMeasures (*measure_node)(const void* system, double t, const double* z, double* y);
+  NodeMeasures (*measure_node)(const void* system, double t, const double* z, double* y) = nullptr;
   // The y that a run begins with; zero leaves the choice to the system.
-  void (*branch)(const void* system, double* y);
+  void (*branch)(const void* system, double* y) = nullptr;
 };
 
 }  // namespace carnot

@@ -7,10 +7,9 @@
 // the discrete Lagrangian (midpoint_transcription.h) picks P lambda = 0 and changes nothing else.
 // Where F loses rank, F'F + epsilon trace(F'F) I stands for F'F = N.
 //
-// The slopes need no n x n products: with b = F'lambda, w = N^-1 F'v and w_l = N^-1 b,
+// The Lagrangian itself needs no n x n products: with b = F'lambda, w = N^-1 F'v and w_l = N^-1 b,
 //
-//   l = w'R w/2 + b.w - b.w_l/2 - lambda.v,
-//   l_v = F (N^-1 R w + w_l) - lambda,      C v + P lambda = v - F (w - w_l).
+//   l = w'R w/2 + b.w - b.w_l/2 - lambda.v.
 #pragma once
 
 #include "carnot/numerics/cholesky.h"
@@ -18,7 +17,6 @@
 #include "carnot/numerics/linear_algebra.h"
 #include "carnot/numerics/scalar.h"
 #include "carnot/scene/optimal_control_scene.h"
-#include "carnot/transcription/midpoint_transcription.h"
 
 namespace carnot {
 
@@ -57,37 +55,30 @@ struct AdmissibleVelocities {
     return product(f, controls(f));
   }
 
-  // Of the discrete Lagrangian; see midpoint_transcription.h.
+  // l = v'M v/2 - lambda'C v - lambda'P lambda/2.
   template <class T>
-  [[nodiscard]] LagrangianSlopes<T, kDof, kDof> slopes(const Vector<T, kDof>& q,
-                                                       const Vector<double, kDof>& v,
-                                                       const Vector<double, kDof>& lambda) const {
-    using J = Jet<T, kDof>;
-    using Controls = Vector<J, kControls>;
-    const auto x = seeded(q);
-    const Matrix<J, kDof, kControls> f = scene.frame(x);
-    const Cholesky<J, kControls> square(regular_square(f));
+  [[nodiscard]] T gauged_lagrangian(const Vector<T, kDof>& q,
+                                    const Vector<double, kDof>& v,
+                                    const Vector<double, kDof>& lambda) const {
+    using Controls = Vector<T, kControls>;
+    const Matrix<T, kDof, kControls> f = scene.frame(q);
+    const Cholesky<T, kControls> square(regular_square(f));
     const Controls b = transposed_times(f, lambda);
     const Controls w = square.solve(transposed_times(f, v));
     const Controls w_l = square.solve(b);
     Controls rw = w;
-    if constexpr (HasControlWeight<Scene>) rw = product(scene.control_weight(x), w);
-    const J l = constant<J>(0.5) * (dot(w, rw) - dot(b, w_l)) + dot(b, w);
-    const Controls by_velocity = square.solve(rw) + w_l;
-    const Matrix<T, kDof, kControls> frame = primal(f);
-    return {l.v,
-            product(frame, primal(by_velocity)) - unseeded<T>(lambda),
-            unseeded<T>(v) - product(frame, primal(Controls(w - w_l)))};
+    if constexpr (HasControlWeight<Scene>) rw = product(scene.control_weight(q), w);
+    return 0.5 * (dot(w, rw) - dot(b, w_l)) + dot(b, w) - lambda.dot(v);
   }
 
  private:
   // F'x.
-  template <class J>
-  static Vector<J, kControls> transposed_times(const Matrix<J, kDof, kControls>& f,
+  template <class T>
+  static Vector<T, kControls> transposed_times(const Matrix<T, kDof, kControls>& f,
                                                const Vector<double, kDof>& x) {
-    Vector<J, kControls> sum = Vector<J, kControls>::Constant(constant<J>(0));
+    Vector<T, kControls> sum = Vector<T, kControls>::Constant(constant<T>(0));
     for (int i = 0; i < kDof; ++i) {
-      for (int j = 0; j < kControls; ++j) sum[j] += f(i, j) * constant<typename J::Scalar>(x[i]);
+      for (int j = 0; j < kControls; ++j) sum[j] += f(i, j) * x[i];
     }
     return sum;
   }

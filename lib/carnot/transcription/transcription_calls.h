@@ -1,6 +1,7 @@
-// The midpoint transcription behind the function pointers of dynamics.h.
+// A scene behind the function pointers of transcription_functions.h.
 #pragma once
 
+#include <concepts>
 #include <type_traits>
 
 #include "carnot/numerics/gradient.h"
@@ -8,7 +9,7 @@
 #include "carnot/system/optimal_control.h"
 #include "carnot/system/velocity_constraints.h"
 #include "carnot/transcription/admissible_velocities.h"
-#include "carnot/transcription/midpoint_transcription.h"
+#include "carnot/transcription/transcription_functions.h"
 
 namespace carnot::dynamics_calls {
 
@@ -31,81 +32,92 @@ struct IsTranscribed<VelocityConstraints<Scene>>
 template <class Scene>
 struct IsTranscribed<OptimalControl<Scene>> : std::bool_constant<OptimalControl<Scene>::kMetric> {};
 
-// The number of constraints of the transcription.
-template <class B>
-inline constexpr int kTranscribed =
-    std::decay_t<decltype(transcription(std::declval<const typename B::System&>()))>::kMultipliers;
+// A scene with dependent rows G, which are a projector: it writes P = I - G, and its Lagrangian.
+template <class S>
+concept HasGauge = requires(const S& scene, const Vector<double, S::kDof>& q) {
+  { scene.gauge(q) } -> std::convertible_to<Matrix<double, S::kMultipliers, S::kMultipliers>>;
+};
+
+// The functions of TranscriptionFunctions for B, a SystemOnBranch.
+template <class Scene, class T>
+void write_entries(const VelocityConstraints<Scene>& system,
+                   const Vector<T, Scene::kDof>& q,
+                   double* out) {
+  const auto write = [&](const T& x) {
+    *out++ = value_of(x);
+    if constexpr (kIsJet<T>) {
+      for (int d = 0; d < Scene::kDof; ++d) *out++ = x.v[d];
+    }
+  };
+  const Matrix<T, Scene::kDof, Scene::kDof> mass = system.scene().mass(q);
+  for (int i = 0; i < Scene::kDof; ++i) {
+    for (int j = 0; j <= i; ++j) write(mass(i, j));
+  }
+  if constexpr (Scene::kMultipliers > 0) {
+    const Matrix<T, Scene::kMultipliers, Scene::kDof> rows = system.scene().constraints(q);
+    for (int i = 0; i < Scene::kMultipliers; ++i) {
+      for (int j = 0; j < Scene::kDof; ++j) write(rows(i, j));
+    }
+  }
+  write(system.potential(q));
+}
 
 template <class B>
-bool midpoint(
-    const void* opaque, const double* qm_in, const double* v_in, double* terms, double* jacobian) {
-  constexpr int n = B::n;
+void transcription_entries(const void* opaque, const double* q, bool slopes, double* out) {
   const auto& system = transcription(B::from(opaque).system);
-  constexpr int k = kTranscribed<B>;
-  const Vector<double, n> qm = view<n>(qm_in);
-  const Vector<double, n> v = view<n>(v_in);
-  // Terms sum_j a_j v_j; a row of the jacobian is a_q v, then a.
-  const auto row_of = [&](const auto& matrix, int row, int first, int to) {
-    double sum = 0;
-    for (int j = first; j < n; ++j) sum += value_of(matrix(row, j)) * v[j];
-    terms[to] = sum;
-    if constexpr (kIsJet<typename std::decay_t<decltype(matrix)>::Scalar>) {
-      double* const by_q = jacobian + to * 2 * n;
-      double* const by_v = by_q + n;
-      for (int i = 0; i < 2 * n; ++i) by_q[i] = 0;
-      for (int j = first; j < n; ++j) {
-        for (int i = 0; i < n; ++i) by_q[i] += v[j] * matrix(row, j).v[i];
-        by_v[j] = matrix(row, j).a;
+  const Vector<double, B::n> at = view<B::n>(q);
+  if (slopes) {
+    write_entries(system, seeded(at), out);
+  } else {
+    write_entries(system, at, out);
+  }
+}
+
+// l is linear in M, G and V, so that no product of Jets is formed.
+template <class B>
+void transcription_hessian(
+    const void* opaque, const double* q, const double* v, const double* lambda, double* l_qq) {
+  constexpr int n = B::n;
+  using T = Jet<Jet<double, n>, n>;
+  const auto& system = transcription(B::from(opaque).system);
+  const auto& scene = system.scene();
+  using Scene = std::decay_t<decltype(scene)>;
+  constexpr int k = Scene::kMultipliers;
+  const Vector<T, n> x = seeded(seeded(Vector<double, n>(view<n>(q))));
+  for (int d = 0; d < n * n; ++d) l_qq[d] = 0;
+  const auto add = [&](const T& entry, double weight) {
+    for (int d = 0; d < n; ++d) {
+      for (int e = 0; e < n; ++e) l_qq[d * n + e] += weight * entry.v[d].v[e];
+    }
+  };
+  if constexpr (HasGauge<Scene>) {
+    add(scene.gauged_lagrangian(
+            x, Vector<double, n>(view<n>(v)), Vector<double, n>(view<n>(lambda))),
+        1);
+  } else {
+    if constexpr (HasPotential<Scene>) add(system.potential(x), -1);
+    const Matrix<T, n, n> mass = scene.mass(x);
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j <= i; ++j) add(mass(i, j), (j < i ? 1 : 0.5) * v[i] * v[j]);
+    }
+    if constexpr (k > 0) {
+      const Matrix<T, k, n> rows = scene.constraints(x);
+      for (int i = 0; i < k; ++i) {
+        for (int j = 0; j < n; ++j) add(rows(i, j), -lambda[i] * v[j]);
       }
     }
-  };
-  const auto write = [&](const auto& factors) {
-    for (int i = 0; i < n; ++i) row_of(factors.root, i, i, i);
-    for (int i = 0; i < k; ++i) row_of(factors.constraints, i, 0, n + i);
-    terms[n + k] = value_of(factors.potential);
-  };
-  if (jacobian == nullptr) {
-    MidpointFactors<double, n, k> factors;
-    if (!midpoint_factors(system, qm, factors)) return false;
-    write(factors);
-    return true;
   }
-  MidpointFactors<Jet<double, n>, n, k> factors;
-  if (!midpoint_factors(system, seeded(qm), factors)) return false;
-  write(factors);
-  double* const last = jacobian + (n + k) * 2 * n;
-  for (int i = 0; i < n; ++i) {
-    last[i] = factors.potential.v[i];
-    last[n + i] = 0;
-  }
-  return true;
 }
 
 template <class B>
-void discrete_lagrangian(
-    const void* opaque, double h, const double* x, double* gradient, double* hessian) {
-  carnot::discrete_lagrangian(transcription(B::from(opaque).system), h, x, gradient, hessian);
-}
-
-// lambda of p = M v - G'lambda. With dependent rows that are a projector C, C lambda = -C p.
-template <class B>
-void midpoint_multipliers(const void* opaque, const double* q, const double* p, double* out) {
-  constexpr int k = kTranscribed<B>;
-  const Vector<double, B::n> at = view<B::n>(q);
-  const auto& system = transcription(B::from(opaque).system);
-  if constexpr (HasGauge<std::decay_t<decltype(system.scene())>>) {
-    view<k>(out) = -(system.scene().constraints(at) * view<B::n>(p));
-  } else {
-    using System = std::decay_t<decltype(system)>;
-    const Vector<double, B::n> momentum = view<B::n>(p);
-    Vector<double, System::kAlgebraic> y = Vector<double, System::kAlgebraic>::Zero();
-    Vector<double, k> lambda = Vector<double, k>::Zero();
-    Rate<double, B::n> rate;
-    if (system.rate(0.0, at, momentum, y, rate) == RateStatus::kOk) {
-      (void)system.multipliers(0.0, at, momentum, y, lambda);
-    }
-    view<k>(out) = lambda;
-  }
+const TranscriptionFunctions& transcription_of() {
+  using Scene = std::decay_t<decltype(transcription(B::from(nullptr).system).scene())>;
+  static constexpr TranscriptionFunctions kFunctions = {B::n,
+                                                        Scene::kMultipliers,
+                                                        HasGauge<Scene>,
+                                                        transcription_entries<B>,
+                                                        transcription_hessian<B>};
+  return kFunctions;
 }
 
 }  // namespace carnot::dynamics_calls

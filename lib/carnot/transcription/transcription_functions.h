@@ -1,0 +1,27 @@
+// What the midpoint transcription asks of a scene, as functions on plain numbers.
+#pragma once
+
+namespace carnot {
+
+// All arrays belong to the caller. q and v have n entries, lambda has k.
+struct TranscriptionFunctions {
+  int dof = 0;          // n
+  int constraints = 0;  // k
+  // Rows of G depend on each other: G is a projector, and P = I - G is the gauge.
+  bool gauge = false;
+
+  // The entries of M at or below its diagonal, row by row, then those of G, row by row, then V: all
+  // at q. With slopes each of them is followed by its n derivatives by q.
+  void (*entries)(const void* system, const double* q, bool slopes, double* out);
+  // The second derivatives by q, n x n, of l = v'M v/2 - V - lambda'G v - lambda'P lambda/2, where
+  // P is zero without a gauge.
+  void (*hessian)(
+      const void* system, const double* q, const double* v, const double* lambda, double* l_qq);
+};
+
+// How many entries there are.
+inline int entry_count(const TranscriptionFunctions& f) {
+  return f.dof * (f.dof + 1) / 2 + f.constraints * f.dof + 1;
+}
+
+}  // namespace carnot
