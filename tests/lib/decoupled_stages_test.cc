@@ -9,7 +9,7 @@
 #include "carnot/tableau/methods.h"
 #include "testing/random_points.h"
 
-namespace carnot {
+namespace carnot::decoupled_stages_test {
 namespace {
 
 constexpr int kSize = 6;
@@ -89,4 +89,4 @@ TEST(DecoupledStagesTest, TellsOfSingularSystems) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::decoupled_stages_test

@@ -72,6 +72,7 @@ struct FarHeading {
   }
   template <class T>
   [[nodiscard]] Matrix<T, 1, 3> constraints(const Vector<T, 3>& q) const {
+    using std::cos, std::sin;
     Matrix<T, 1, 3> g;
     g << sin(q[2]), -cos(q[2]), T(0);
     return g;

@@ -7,7 +7,7 @@
 #include "carnot/plots/curves_of.h"
 #include "plot_fixtures.h"
 
-namespace carnot::plots {
+namespace carnot::plots::figure_test {
 namespace {
 
 using View = Drawing::View;
@@ -231,4 +231,4 @@ TEST_F(FigureFile, BadInputIsRefused) {
 }
 
 }  // namespace
-}  // namespace carnot::plots
+}  // namespace carnot::plots::figure_test

@@ -7,7 +7,7 @@
 
 #include "plot_fixtures.h"
 
-namespace carnot::plots {
+namespace carnot::plots::instants_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -111,4 +111,4 @@ TEST(BodyInstants, WithoutABodyOrMotionThereAreTheEnds) {
 }
 
 }  // namespace
-}  // namespace carnot::plots
+}  // namespace carnot::plots::instants_test

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace carnot::plots {
+namespace carnot::plots::page_test {
 namespace {
 
 Axis axis_of(double lower, double upper) {
@@ -41,4 +41,4 @@ TEST(Axis, IgnoresWhatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace carnot::plots
+}  // namespace carnot::plots::page_test

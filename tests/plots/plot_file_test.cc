@@ -7,7 +7,7 @@
 
 #include "plot_fixtures.h"
 
-namespace carnot::plots {
+namespace carnot::plots::plot_file_test {
 namespace {
 
 using PictureFile = Directory;
@@ -89,4 +89,4 @@ TEST_F(PictureFile, MissingGnuplotIsReported) {
 }
 
 }  // namespace
-}  // namespace carnot::plots
+}  // namespace carnot::plots::plot_file_test

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace carnot::plots {
+namespace carnot::plots::script_test {
 namespace {
 
 TEST(Script, NamesBecomeMarkup) {
@@ -34,4 +34,4 @@ TEST(Script, TimeColorsRunFromStartToGoal) {
 }
 
 }  // namespace
-}  // namespace carnot::plots
+}  // namespace carnot::plots::script_test

@@ -9,7 +9,7 @@
 
 #include "plot_fixtures.h"
 
-namespace carnot::plots {
+namespace carnot::plots::series_plot_test {
 namespace {
 
 using ::testing::AllOf;
@@ -228,4 +228,4 @@ TEST(SeriesPageTest, WithoutAFrameThereAreNoTics) {
 }
 
 }  // namespace
-}  // namespace carnot::plots
+}  // namespace carnot::plots::series_plot_test

@@ -7,7 +7,7 @@
 
 #include "plot_fixtures.h"
 
-namespace carnot::plots {
+namespace carnot::plots::space_plot_test {
 namespace {
 
 using View = Drawing::View;
@@ -151,4 +151,4 @@ TEST(SpaceTics, ThereAreThreeAtLeast) {
 }
 
 }  // namespace
-}  // namespace carnot::plots
+}  // namespace carnot::plots::space_plot_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace carnot::plots {
+namespace carnot::plots::units_test {
 namespace {
 
 TEST(Units, ExponentsAreSuperscripts) {
@@ -32,4 +32,4 @@ TEST(Units, MomentumIsActionOverTheUnitOfTheCoordinate) {
 }
 
 }  // namespace
-}  // namespace carnot::plots
+}  // namespace carnot::plots::units_test

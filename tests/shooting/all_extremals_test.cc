@@ -9,7 +9,7 @@
 #include "carnot/shooting/find_geodesics.h"
 #include "shooting/problems.h"
 
-namespace carnot {
+namespace carnot::all_extremals_test {
 namespace {
 
 // From the origin of the Grushin plane, with w = p_y: x(t) = p_x sin(w t)/w and
@@ -74,4 +74,4 @@ TEST(AllExtremals, DilationsKeepThem) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::all_extremals_test

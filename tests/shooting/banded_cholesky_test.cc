@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-namespace carnot::internal {
+namespace carnot::internal::banded_cholesky_test {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
@@ -51,4 +51,4 @@ TEST(BandedCholesky, RefusesWhatIsNotPositiveDefinite) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::banded_cholesky_test

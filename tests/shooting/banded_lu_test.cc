@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-namespace carnot::internal {
+namespace carnot::internal::banded_lu_test {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
@@ -54,4 +54,4 @@ TEST(BandedLu, RefusesWhatIsNotANumber) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::banded_lu_test

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <vector>
 
-namespace carnot::internal {
+namespace carnot::internal::chain_least_squares_test {
 namespace {
 
 constexpr double kTight = 1e-12;
@@ -114,4 +114,4 @@ TEST(ChainLeastSquares, KeepsWithinWhereTheResidualsExist) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::chain_least_squares_test

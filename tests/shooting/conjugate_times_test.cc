@@ -8,7 +8,7 @@
 #include "shooting/problems.h"
 #include "testing/reference.h"
 
-namespace carnot::internal {
+namespace carnot::internal::conjugate_times_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -167,4 +167,4 @@ TEST(ConjugateTimes, StraightAheadHasNone) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::conjugate_times_test

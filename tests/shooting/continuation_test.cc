@@ -11,7 +11,7 @@
 #include "carnot/shooting/find_geodesics.h"
 #include "shooting/problems.h"
 
-namespace carnot {
+namespace carnot::continuation_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -300,4 +300,4 @@ TEST(Continuation, BadInputIsRefused) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::continuation_test

@@ -8,7 +8,7 @@
 #include "carnot/shooting/find_geodesics.h"
 #include "shooting/problems.h"
 
-namespace carnot::internal {
+namespace carnot::internal::curve_tracer_test {
 namespace {
 
 constexpr long kSteps = 32;
@@ -88,4 +88,4 @@ TEST_F(CurveTracerTest, RefusesAToleranceOutOfReach) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::curve_tracer_test

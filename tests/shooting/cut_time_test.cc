@@ -16,7 +16,7 @@
 #include "carnot/shooting/find_geodesics.h"
 #include "shooting/problems.h"
 
-namespace carnot {
+namespace carnot::cut_time_test {
 namespace {
 
 double cut_time(double rho) {
@@ -126,4 +126,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return "Rho" + std::to_string(std::lround(10 * info.param.rho)); });
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::cut_time_test

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-namespace carnot::internal {
+namespace carnot::internal::dense_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -146,4 +146,4 @@ TEST(Dense, LeastSquaresHaveTheLeastNorm) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::dense_test

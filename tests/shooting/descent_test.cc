@@ -17,7 +17,7 @@
 #include "carnot/shooting/search/starts.h"
 #include "shooting/problems.h"
 
-namespace carnot::internal {
+namespace carnot::internal::descent_test {
 namespace {
 
 std::optional<Path> relaxed(const BoundaryValueProblem& problem, std::uint64_t seed, int number) {
@@ -113,4 +113,4 @@ TEST(Descent, FindsNothingWhereTheActionHasNoMinimum) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::descent_test

@@ -10,7 +10,7 @@
 
 #include "shooting/problems.h"
 
-namespace carnot::internal {
+namespace carnot::internal::dilation_test {
 namespace {
 
 using Eigen::VectorXd;
@@ -80,4 +80,4 @@ TEST(Dilation, NothingWhereTheFrameIsSingular) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::dilation_test

@@ -8,7 +8,7 @@
 
 #include "shooting/problems.h"
 
-namespace carnot::internal {
+namespace carnot::internal::discrete_list_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -102,4 +102,4 @@ TEST_F(DiscreteListTest, GivesUp) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::discrete_list_test

@@ -11,7 +11,7 @@
 #include "carnot/shooting/shoot/end_point.h"
 #include "shooting/problems.h"
 
-namespace carnot::internal {
+namespace carnot::internal::end_point_model_test {
 namespace {
 
 using Vector = EndPointModel::Vector;
@@ -94,4 +94,4 @@ TEST(EndPointModel, HasNoInverseAtAConjugatePoint) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::end_point_model_test

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-namespace carnot::internal {
+namespace carnot::internal::extremal_list_test {
 namespace {
 
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
@@ -99,4 +99,4 @@ TEST(ExtremalList, CompetitionForTheLeastAction) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::extremal_list_test

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace carnot {
+namespace carnot::face_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -92,4 +92,4 @@ TEST(Face, OthersAreInternal) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::face_test

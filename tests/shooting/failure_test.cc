@@ -13,7 +13,7 @@
 #include "shooting/problems.h"
 #include "testing/failing_scenes.h"
 
-namespace carnot::internal {
+namespace carnot::internal::failure_test {
 namespace {
 
 constexpr long kSteps = 32;
@@ -135,4 +135,4 @@ TEST(Failure, NamesDiffer) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::failure_test

@@ -12,7 +12,7 @@
 #include "carnot/shooting/problem/problem_line.h"
 #include "shooting/problems.h"
 
-namespace carnot {
+namespace carnot::geodesic_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -394,4 +394,4 @@ TEST(Geodesic, RefusesBadInput) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::geodesic_test

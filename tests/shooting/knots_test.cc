@@ -8,7 +8,7 @@
 #include "shooting/problems.h"
 #include "testing/failing_scenes.h"
 
-namespace carnot::internal {
+namespace carnot::internal::knots_test {
 namespace {
 
 TEST(Knots, AreEveryFewNodesOfAPath) {
@@ -62,4 +62,4 @@ TEST(Knots, PlansOfSegmentsMeet) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::knots_test

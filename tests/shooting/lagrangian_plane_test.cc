@@ -9,7 +9,7 @@
 #include "carnot/shooting/linear/dense.h"
 #include "shooting/symplectic.h"
 
-namespace carnot::internal {
+namespace carnot::internal::lagrangian_plane_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -89,4 +89,4 @@ TEST(LagrangianPlane, GraphsShowTheKernelOfX) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::lagrangian_plane_test

@@ -7,7 +7,7 @@
 
 #include "shooting/problems.h"
 
-namespace carnot::internal {
+namespace carnot::internal::line_equations_test {
 namespace {
 
 // A central difference: eps^(2/3) of round-off and truncation, magnified by the growth of the flow.
@@ -65,4 +65,4 @@ TEST(LineEquations, DoNotLeaveTheLine) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::line_equations_test

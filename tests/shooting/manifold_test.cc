@@ -6,7 +6,7 @@
 
 #include "shooting/problems.h"
 
-namespace carnot::internal {
+namespace carnot::internal::manifold_test {
 namespace {
 
 constexpr double kRounded = 1e-13;
@@ -58,4 +58,4 @@ TEST(Manifold, VelocitiesOfMomentaAreTangent) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::manifold_test

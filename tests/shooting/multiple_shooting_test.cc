@@ -8,7 +8,7 @@
 #include "carnot/shooting/shoot/shooting_equations.h"
 #include "shooting/problems.h"
 
-namespace carnot::internal {
+namespace carnot::internal::multiple_shooting_test {
 namespace {
 
 // The extremal of the general problem of the parking reference, to a few digits.
@@ -94,4 +94,4 @@ TEST(Shooting, EveryMinimiserArrives) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::multiple_shooting_test

@@ -18,7 +18,7 @@
 #include "catalogue/scene_choice.h"
 #include "shooting/problems.h"
 
-namespace carnot::internal {
+namespace carnot::internal::product_scenes_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -274,4 +274,4 @@ TEST(PlateBallQuaternion, ReachesEveryAttitude) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::product_scenes_test

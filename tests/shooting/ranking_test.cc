@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace carnot::internal {
+namespace carnot::internal::ranking_test {
 namespace {
 
 Extremal extremal(double action, double p) {
@@ -38,4 +38,4 @@ TEST(MissedEstimate, IsThatOfChao) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::ranking_test

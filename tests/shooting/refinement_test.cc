@@ -10,7 +10,7 @@
 #include "carnot/shooting/search/starts.h"
 #include "shooting/problems.h"
 
-namespace carnot::internal {
+namespace carnot::internal::refinement_test {
 namespace {
 
 Path tight(const BoundaryValueProblem& problem) {
@@ -64,4 +64,4 @@ TEST(Refinement, ExtrapolationIsOfFourthOrder) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::refinement_test

@@ -10,7 +10,7 @@
 #include "carnot/shooting/search/starts.h"
 #include "shooting/problems.h"
 
-namespace carnot::internal {
+namespace carnot::internal::relaxation_test {
 namespace {
 
 // First start of the sequence that Newton's method tightens.
@@ -97,4 +97,4 @@ TEST(DiscreteNewton, ReportsFailureWithoutNaN) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::relaxation_test

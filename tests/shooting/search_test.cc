@@ -8,7 +8,7 @@
 
 #include "shooting/problems.h"
 
-namespace carnot::internal {
+namespace carnot::internal::search_test {
 namespace {
 
 TEST(Search, CountsItsStarts) {
@@ -79,4 +79,4 @@ TEST(Search, AGuessIsOneStart) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::search_test

@@ -11,7 +11,7 @@
 #include "carnot/shooting/search/starts.h"
 #include "shooting/problems.h"
 
-namespace carnot::internal {
+namespace carnot::internal::singular_coordinates_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -94,4 +94,4 @@ TEST(SingularCoordinates, TheLeastIsFoundWhateverTheSeed) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::singular_coordinates_test

@@ -9,7 +9,7 @@
 #include "carnot/shooting/find_geodesics.h"
 #include "shooting/problems.h"
 
-namespace carnot::internal {
+namespace carnot::internal::solution_curve_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -127,4 +127,4 @@ TEST(SolutionCurve, DoesNotStartWhereTheJacobianLacksRank) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::solution_curve_test

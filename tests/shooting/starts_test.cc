@@ -7,7 +7,7 @@
 
 #include "shooting/problems.h"
 
-namespace carnot::internal {
+namespace carnot::internal::starts_test {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
@@ -69,4 +69,4 @@ TEST(Starts, GrowWithTheTarget) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::starts_test

@@ -10,7 +10,7 @@
 #include "shooting/problems.h"
 #include "testing/allocation_counter.h"
 
-namespace carnot {
+namespace carnot::steering_allocation_test {
 namespace {
 
 #ifdef CARNOT_TEST_COUNTS_MALLOC
@@ -49,4 +49,4 @@ TEST(SteeringAllocationTest, WarmStartsAllocateNothing) {
 #endif
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::steering_allocation_test

@@ -14,7 +14,7 @@
 #include "shooting/problems.h"
 #include "testing/failing_scenes.h"
 
-namespace carnot {
+namespace carnot::steering_function_test {
 namespace {
 
 using ::testing::ElementsAreArray;
@@ -306,4 +306,4 @@ TEST(SteeringFunctionTest, RefusesBadOptions) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::steering_function_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace carnot::internal {
+namespace carnot::internal::stopping_policy_test {
 namespace {
 
 GeodesicOptions options_for(int count, bool all = false, int starts = 0) {
@@ -84,4 +84,4 @@ TEST(StoppingPolicy, EndsWhenTheLeastActionIsHitOftenEnough) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::stopping_policy_test

@@ -12,7 +12,7 @@
 #include "carnot/shooting/problem/problem_line.h"
 #include "shooting/problems.h"
 
-namespace carnot::internal {
+namespace carnot::internal::symmetry_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -90,4 +90,4 @@ TEST(Symmetry, AGeneralProblemHasNone) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::symmetry_test

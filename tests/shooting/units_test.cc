@@ -7,7 +7,7 @@
 #include "shooting/problems.h"
 #include "shooting/symplectic.h"
 
-namespace carnot::internal {
+namespace carnot::internal::units_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -77,4 +77,4 @@ TEST_F(UnitsTest, AreGraded) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::units_test

@@ -13,7 +13,7 @@
 #include "carnot/shooting/shoot/survey.h"
 #include "shooting/problems.h"
 
-namespace carnot::internal {
+namespace carnot::internal::verification_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -152,4 +152,4 @@ TEST(Search, KeepsOneMemberOfAFamily) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::verification_test

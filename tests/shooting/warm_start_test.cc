@@ -11,7 +11,7 @@
 #include "carnot/shooting/find_geodesics.h"
 #include "shooting/problems.h"
 
-namespace carnot {
+namespace carnot::warm_start_test {
 namespace {
 
 constexpr double kTolerance = 1e-10;
@@ -104,4 +104,4 @@ TEST(WarmStart, BadInputIsRefused) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::warm_start_test

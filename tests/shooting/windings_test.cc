@@ -11,7 +11,7 @@
 #include "carnot/shooting/find_geodesics.h"
 #include "shooting/problems.h"
 
-namespace carnot::internal {
+namespace carnot::internal::windings_test {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
@@ -50,4 +50,4 @@ TEST(Windings, TheShortestWayRoundIsFound) {
 }
 
 }  // namespace
-}  // namespace carnot::internal
+}  // namespace carnot::internal::windings_test

@@ -12,7 +12,7 @@
 #include "catalogue/scene_choice.h"
 #include "verify/method_audit.h"
 
-namespace carnot::apps {
+namespace carnot::apps::audit_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -256,4 +256,4 @@ TEST(FitLine, IsExactOnALine) {
 }
 
 }  // namespace
-}  // namespace carnot::apps
+}  // namespace carnot::apps::audit_test

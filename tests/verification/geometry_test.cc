@@ -5,7 +5,7 @@
 #include "carnot/tableau/make_tableau.h"
 #include "testing/geometry_laws.h"
 
-namespace carnot {
+namespace carnot::geometry_test {
 namespace {
 
 template <class Scene>
@@ -38,4 +38,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& of) { return std::get<0>(of.param).name + ("_" + std::get<1>(of.param)); });
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::geometry_test

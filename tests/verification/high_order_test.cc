@@ -5,7 +5,7 @@
 
 #include "testing/order_law.h"
 
-namespace carnot {
+namespace carnot::high_order_test {
 namespace {
 
 using T = boost::multiprecision::float128;
@@ -33,4 +33,4 @@ TEST_F(HighOrderTest, EightStages) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::high_order_test

@@ -13,7 +13,7 @@
 #include "testing/allocation_counter.h"
 #include "testing/runs.h"
 
-namespace carnot {
+namespace carnot::no_allocation_test {
 namespace {
 
 #ifdef CARNOT_TEST_COUNTS_MALLOC
@@ -113,4 +113,4 @@ TEST(NoAllocationTest, CannotBeCounted) {
 #endif
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::no_allocation_test

@@ -4,7 +4,7 @@
 #include "testing/geometry_laws.h"
 #include "testing/runge_kutta4.h"
 
-namespace carnot {
+namespace carnot::not_geometric_test {
 namespace {
 
 constexpr double kStep = 0.2;
@@ -37,4 +37,4 @@ TEST_F(NotGeometricTest, ReversibilityFails) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::not_geometric_test

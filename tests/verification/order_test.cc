@@ -2,7 +2,7 @@
 #include "testing/order_law.h"
 #include "testing/runge_kutta4.h"
 
-namespace carnot {
+namespace carnot::order_test {
 namespace {
 
 // In long double: order 8 needs the room below double.
@@ -44,4 +44,4 @@ TEST_F(OrderTest, RungeKutta4) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::order_test

@@ -15,7 +15,7 @@
 #include "carnot/system/velocity_constraints.h"
 #include "catalogue/scene_choice.h"
 
-namespace carnot {
+namespace carnot::round_off_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -122,4 +122,4 @@ TYPED_TEST(RoundOffTest, CompensationPays) {
 }
 
 }  // namespace
-}  // namespace carnot
+}  // namespace carnot::round_off_test
