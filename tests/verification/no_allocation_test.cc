@@ -76,7 +76,7 @@ void expect_no_allocation(const Tableau<double, s>& tableau, double h, bool newt
 
 template <class Scene, int s>
 void expect_no_allocation(double h, bool newton) {
-  expect_no_allocation<Scene, s>(fixed_gauss_tableau<double, s>(), h, newton);
+  expect_no_allocation<Scene, kKnownStages<double, s>>(fixed_gauss_tableau<double, s>(), h, newton);
 }
 
 constexpr double kFixedPointStep = 0.1;
