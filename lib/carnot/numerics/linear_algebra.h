@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <span>
 
 #include "carnot/numerics/scalar.h"
 
@@ -79,6 +80,16 @@ Eigen::Map<const Vector<double, n>> view(const double* x) {
 template <int n>
 Eigen::Map<Vector<double, n>> view(double* x) {
   return Eigen::Map<Vector<double, n>>(x, n);
+}
+
+// The numbers of a vector or matrix, in the order in which it keeps them.
+template <class Derived>
+std::span<const double> span_of(const Eigen::PlainObjectBase<Derived>& a) {
+  return {a.data(), static_cast<std::size_t>(a.size())};
+}
+template <class Derived>
+std::span<double> span_of(Eigen::PlainObjectBase<Derived>& a) {
+  return {a.data(), static_cast<std::size_t>(a.size())};
 }
 
 }  // namespace carnot
