@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <span>
 
 #include "carnot/numerics/parallel.h"
 #include "catalogue/scene_choice.h"
@@ -37,7 +38,8 @@ std::vector<double> start_of(const std::string& scene, int index) {
 double energy_of(const Dynamics& dynamics, const std::vector<double>& z) {
   std::vector<double> q_dot(dynamics.dof);
   std::vector<double> lambda(dynamics.multipliers);
-  return dynamics.evaluate(0, z.data(), z.data() + dynamics.dof, q_dot.data(), lambda.data())
+  const std::span at(z);
+  return dynamics.evaluate(0, at.first(dynamics.dof), at.subspan(dynamics.dof), q_dot, lambda)
       .hamiltonian;
 }
 
@@ -57,7 +59,7 @@ bool advance(
   for (; first < last; first += most) {
     const double length = kEnergyStep * static_cast<double>(most);
     const auto plan = StepPlan::equal(kEnergyStep * static_cast<double>(first), length, most);
-    if (!dynamics.flow(plan, z.data()).completed()) return false;
+    if (!dynamics.flow(plan, z).completed()) return false;
     fold(dynamics, z);
   }
   return true;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "benchmark/benchmark_contest.h"
 #include "carnot/laws/step_choice.h"
@@ -28,14 +29,14 @@ ChosenFlow flow_by_tolerance(const Dynamics& dynamics,
                              double tolerance,
                              std::vector<double>& z) {
   if (dynamics.has_automatic_flow()) {
-    const AutomaticFlow flow = dynamics.automatic_flow(0, duration, tolerance, z.data());
+    const AutomaticFlow flow = dynamics.automatic_flow(0, duration, tolerance, z);
     if (flow.reached) return {true, "", flow.plan, flow.evaluations};
   }
   const StepChoice choice = choose_steps(dynamics, 0, duration, z, tolerance);
   StepPlan plan = StepPlan::equal(0, duration, std::max(1L, choice.count));
   plan.stop = choice.stop;
   if (choice.status != StepChoiceStatus::kOk) return {false, choice.message, plan, 0};
-  const FlowReport report = dynamics.flow(plan, z.data());
+  const FlowReport report = dynamics.flow(plan, z);
   return {report.completed(),
           std::string(report.reason()),
           plan,
@@ -47,7 +48,7 @@ double flow_many(const Dynamics& dynamics,
                  const StepPlan& plan,
                  long count,
                  std::vector<double>& z) {
-  const BatchReport report = dynamics.flow_batch(plan, static_cast<int>(count), z.data(), 1);
+  const BatchReport report = dynamics.flow_batch(plan, static_cast<int>(count), z, 1);
   return report.failed > 0 ? -1 : static_cast<double>(report.evaluations);
 }
 
@@ -56,7 +57,7 @@ void keep(const std::vector<double>& z, std::size_t size, BenchmarkEnd& end) {
 }
 
 BenchmarkWatch watch_plan(const Dynamics& dynamics, const StepPlan& plan, std::vector<double> z) {
-  const FlowSummary summary = dynamics.monitored_flow(plan, z.data(), {});
+  const FlowSummary summary = dynamics.monitored_flow(plan, z, {});
   return {summary.energy_drift, std::string(summary.report.reason())};
 }
 
@@ -72,7 +73,7 @@ Contestant by_steps(const Dynamics& dynamics,
   contestant.step_or_tolerance = plan.step;
   contestant.run = [dynamics, plan, start = problem.start, z = problem.start]() mutable {
     z = start;
-    const FlowReport report = dynamics.flow(plan, z.data());
+    const FlowReport report = dynamics.flow(plan, z);
     BenchmarkEnd end;
     end.completed = report.completed();
     end.evaluations = static_cast<double>(report.evaluations);
@@ -158,7 +159,7 @@ Contestant batch_by_tolerance(const Dynamics& dynamics,
   const std::vector<double> starts = batch_starts(problem);
   auto run = [=, z = starts]() mutable {
     z = starts;
-    const BatchReport report = dynamics.adaptive_batch(0, duration, tolerance, kBatch, z.data(), 1);
+    const BatchReport report = dynamics.adaptive_batch(0, duration, tolerance, kBatch, z, 1);
     BenchmarkEnd end;
     end.completed = report.failed == 0;
     end.evaluations = static_cast<double>(report.evaluations) / kBatch;
@@ -221,7 +222,14 @@ BenchmarkProblem benchmark_problem(const BenchmarkTrajectory& trajectory) {
   problem.energy = [dynamics](const double* z) {
     std::array<double, BenchmarkEnd::kMostSize> q_dot{};
     std::array<double, BenchmarkEnd::kMostSize> lambda{};
-    return dynamics.evaluate(0, z, z + dynamics.dof, q_dot.data(), lambda.data()).hamiltonian;
+    const auto n = static_cast<std::size_t>(dynamics.dof);
+    return dynamics
+        .evaluate(0,
+                  {z, n},
+                  {z + n, n},
+                  std::span(q_dot).first(n),
+                  std::span(lambda).first(dynamics.multipliers))
+        .hamiltonian;
   };
   return problem;
 }

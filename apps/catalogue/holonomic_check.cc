@@ -23,7 +23,7 @@ void check_end(std::string_view option,
   if (dynamics.holonomic > 0) {
     std::vector<double> z = q;
     z.resize(2 * q.size(), 0.0);
-    check_holonomic(option, text, dynamics.holonomic_residuals(0, z.data()).position);
+    check_holonomic(option, text, dynamics.holonomic_residuals(0, z).position);
   }
   const RateStatus status = end_status(dynamics, q);
   if (status != RateStatus::kOk) refuse(option, text, describe(status), "regular configurations");

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <span>
 
 #include "carnot/laws/step_choice.h"
 #include "flow/flow_request.h"
@@ -44,7 +45,8 @@ std::string regularity_text(const PointValues& at) {
 PointValues values_at(const Dynamics& dynamics, double t, const std::vector<double>& z) {
   std::vector<double> q_dot(dynamics.dof);
   std::vector<double> lambda(dynamics.multipliers);
-  return dynamics.evaluate(t, z.data(), z.data() + dynamics.dof, q_dot.data(), lambda.data());
+  const std::span at(z);
+  return dynamics.evaluate(t, at.first(dynamics.dof), at.subspan(dynamics.dof), q_dot, lambda);
 }
 
 // Why a flow cannot start at z; empty when it can.
@@ -96,7 +98,7 @@ FlowOutcome run_flow(const FlowRequest& request) {
     MonitorOptions audit;
     audit.samples = request.run.samples;
     audit.progress = bar.callback();
-    outcome.summary = request.run.dynamics.monitored_flow(outcome.plan, outcome.z.data(), audit);
+    outcome.summary = request.run.dynamics.monitored_flow(outcome.plan, outcome.z, audit);
     outcome.message = outcome.summary.report.reason();
     if (!outcome.completed()) {
       const double reached = outcome.summary.report.time_reached;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "catalogue/holonomic_check.h"
@@ -31,7 +32,7 @@ std::vector<double> momentum_of(const Dynamics& dynamics,
     for (double& v : trial) v /= size;
   }
   std::vector<double> p(q.size());
-  const double residual = dynamics.momentum(t, q.data(), trial.data(), lambda.data(), p.data());
+  const double residual = dynamics.momentum(t, q, trial, lambda, p);
   if (!(residual <= kVelocityTolerance)) {
     refuse(
         "--velocity",
@@ -39,7 +40,7 @@ std::vector<double> momentum_of(const Dynamics& dynamics,
         fmt::format("it violates the constraints at --from, residual |g|/|v| = {:.3g}", residual),
         fmt::format("a velocity with residual <= {:g}", kVelocityTolerance));
   }
-  dynamics.momentum(t, q.data(), velocity.data(), lambda.data(), p.data());
+  dynamics.momentum(t, q, velocity, lambda, p);
   if (!std::all_of(p.begin(), p.end(), [](double x) { return std::isfinite(x); })) {
     refuse("--velocity",
            text,
@@ -84,8 +85,9 @@ void choose_branch(const FlowOptions& options, FlowRequest& request) {
   if (!dynamics.has_branches()) return;
   if (options.lambda.empty() && options.velocity.empty()) return;
   const auto lambda = parse_lambda(options, dynamics);
-  const double* q = request.z.data();
-  auto chosen = dynamics.on_branch(request.start_time, q, q + dynamics.dof, lambda.data());
+  const std::span<const double> z(request.z);
+  auto chosen = dynamics.on_branch(
+      request.start_time, z.first(dynamics.dof), z.subspan(dynamics.dof), lambda);
   if (!chosen) {
     refuse("--lambda", options.lambda, "no solution of H_y = 0 is near it", "another --lambda");
   }
@@ -96,7 +98,7 @@ void choose_branch(const FlowOptions& options, FlowRequest& request) {
 void check_manifold(const FlowOptions& options, FlowRequest& request) {
   const Dynamics& dynamics = request.run.dynamics;
   if (dynamics.holonomic == 0) return;
-  const auto residuals = dynamics.holonomic_residuals(request.start_time, request.z.data());
+  const auto residuals = dynamics.holonomic_residuals(request.start_time, request.z);
   check_holonomic("--from", options.from, residuals.position);
   const bool by_momentum = !options.momentum.empty();
   if (!(residuals.velocity <= kVelocityTolerance)) {
@@ -106,7 +108,7 @@ void check_manifold(const FlowOptions& options, FlowRequest& request) {
                        residuals.velocity),
            fmt::format("a residual <= {:g}", kVelocityTolerance));
   }
-  if (!dynamics.project_on_manifold(request.start_time, request.z.data())) {
+  if (!dynamics.project_on_manifold(request.start_time, request.z)) {
     refuse("--from", options.from, "the holonomic constraints are dependent", "another --from");
   }
 }

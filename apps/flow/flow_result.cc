@@ -35,13 +35,9 @@ EndPoint end_point(const FlowRequest& request, const FlowOutcome& outcome) {
     return end;
   }
   std::vector<double> q_dot(dynamics.dof);
-  end.hamiltonian = dynamics
-                        .evaluate(outcome.summary.report.time_reached,
-                                  end.q.data(),
-                                  end.p.data(),
-                                  q_dot.data(),
-                                  end.lambda.data())
-                        .hamiltonian;
+  end.hamiltonian =
+      dynamics.evaluate(outcome.summary.report.time_reached, end.q, end.p, q_dot, end.lambda)
+          .hamiltonian;
   return end;
 }
 
@@ -161,7 +157,7 @@ std::string draw(const std::string& file, const FlowRequest& request, const Step
   audit.samples =
       std::max(request.run.samples, std::min(kMostPoints, kPointsPerStep * plan.count + 1));
   std::vector<double> z = request.z;
-  const FlowSummary fine = dynamics.monitored_flow(plan, z.data(), audit);
+  const FlowSummary fine = dynamics.monitored_flow(plan, z, audit);
   return plots::write_figure(
       file,
       dynamics.info,

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <span>
 
 #include "carnot/plots/figure.h"
 #include "text/text_table.h"
@@ -29,7 +30,7 @@ std::vector<double> momenta(const Dynamics& dynamics, const std::vector<double>&
   const std::vector<double> z = circle_start();
   std::vector<double> velocity{0, kSpeed, 1, 1};
   std::vector<double> p(4);
-  dynamics.momentum(0, z.data(), velocity.data(), lambda.data(), p.data());
+  dynamics.momentum(0, std::span(z).first(4), velocity, lambda, p);
   return p;
 }
 
@@ -43,7 +44,7 @@ void add_circle_momenta(const Dynamics& dynamics, PaperPart& part) {
   const std::vector<double> z = circle_start();
   std::vector<double> velocity(4);
   std::vector<double> lambda(2);
-  dynamics.evaluate(0, z.data(), z.data() + 4, velocity.data(), lambda.data());
+  dynamics.evaluate(0, std::span(z).first(4), std::span(z).last(4), velocity, lambda);
   const double off = max_distance(lambda, {0, -kSpeed});
   part.rows.push_back({"lambda on the circle",
                        "(1, -c) = (1, -1)",

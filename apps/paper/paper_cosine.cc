@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "carnot/plots/series_plot.h"
 
@@ -156,7 +157,7 @@ std::vector<double> vehicle_start(const Dynamics& dynamics,
   std::vector<double> velocity{
       driving * std::cos(phi), driving * std::sin(phi), driving * std::sin(phi - theta), steering};
   const std::vector<double> lambda{0, 0};
-  dynamics.momentum(0, z.data(), velocity.data(), lambda.data(), z.data() + 4);
+  dynamics.momentum(0, q, velocity, lambda, std::span(z).last(4));
   return z;
 }
 

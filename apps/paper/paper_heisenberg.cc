@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <span>
 
 #include "carnot/plots/figure.h"
 #include "paper/paper_parts.h"
@@ -30,8 +31,8 @@ constexpr double kReferenceTime = 10;
 void add_start(const Dynamics& dynamics, PaperPart& part) {
   std::vector<double> velocity(3);
   std::vector<double> lambda(1);
-  const PointValues at =
-      dynamics.evaluate(0, kStart.data(), kStart.data() + 3, velocity.data(), lambda.data());
+  const std::span z(kStart);
+  const PointValues at = dynamics.evaluate(0, z.first(3), z.last(3), velocity, lambda);
   const bool right = std::abs(lambda[0] + 1) <= 4 * kEps;
   part.rows.push_back({"lambda at q = 0, p = (0.1, 0.3, 1)",
                        "1",

@@ -26,7 +26,7 @@ FlowSummary PaperWork::flow(const Dynamics& dynamics,
   MonitorOptions options;
   options.samples = samples;
   options.progress = part(steps);
-  FlowSummary summary = dynamics.monitored_flow(plan, z.data(), options);
+  FlowSummary summary = dynamics.monitored_flow(plan, z, options);
   finish(dynamics, summary.report, steps);
   return summary;
 }

@@ -58,7 +58,7 @@ void add_line_momenta(const Dynamics& dynamics, PaperPart& part) {
   std::vector<double> velocity{1, 0, 0, 0};
   const std::vector<double> lambda{0, 0};
   std::vector<double> p(4);
-  const double violated = dynamics.momentum(0, q.data(), velocity.data(), lambda.data(), p.data());
+  const double violated = dynamics.momentum(0, q, velocity, lambda, p);
   const bool right = violated == 0 && p == std::vector<double>{1, 0, 0, 0};
   part.rows.push_back({"momenta of x' = 1 at q = 0",
                        "all zero except p_x = 1",

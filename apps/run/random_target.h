@@ -27,7 +27,7 @@ inline std::vector<double> random_target(const Dynamics& dynamics, std::uint64_t
       to.push_back(std::uniform_real_distribution<double>(-reach, reach)(random));
     }
   } while (!internal::bring_to_manifold(dynamics, to.data()) ||
-           dynamics.chart(origin.data()) * dynamics.chart(to.data()) < 0);
+           dynamics.chart(origin) * dynamics.chart(to) < 0);
   return to;
 }
 

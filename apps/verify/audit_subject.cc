@@ -50,7 +50,7 @@ bool moves(const Dynamics& dynamics, const PhaseStart& start, double duration) {
   constexpr double kLeastWay = 0.1;
   constexpr double kFurthest = 100;
   std::vector<double> z = start.z;
-  const FlowReport report = dynamics.flow(StepPlan::equal(start.t, duration, kSteps), z.data());
+  const FlowReport report = dynamics.flow(StepPlan::equal(start.t, duration, kSteps), z);
   if (!report.completed()) return false;
   double way = 0;
   for (std::size_t i = 0; i < z.size(); ++i) way = std::max(way, std::abs(z[i] - start.z[i]));
@@ -65,7 +65,7 @@ std::vector<double> generic_point(int k, int size) {
 }
 
 bool on_manifold(const Dynamics& dynamics, PhaseStart& start) {
-  return dynamics.holonomic == 0 || dynamics.project_on_manifold(start.t, start.z.data());
+  return dynamics.holonomic == 0 || dynamics.project_on_manifold(start.t, start.z);
 }
 
 const char* accurate_method(const SceneEntry& entry) {

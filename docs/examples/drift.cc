@@ -14,6 +14,7 @@
 
 #include <cmath>
 #include <iostream>
+#include <span>
 #include <vector>
 
 struct DriftingCharge {
@@ -52,17 +53,18 @@ int main() {
   const carnot::Dynamics dynamics = carnot::make_dynamics(scene, "gauss8");
   std::vector<double> z{1, 0};  // q = x and p = b y
   const carnot::FlowSummary summary =
-      dynamics.monitored_flow(carnot::StepPlan::equal(0, 1000, 4000), z.data(), {});
+      dynamics.monitored_flow(carnot::StepPlan::equal(0, 1000, 4000), z, {});
   if (!summary.completed()) {
     std::cerr << summary.report.reason() << '\n';
     return 1;
   }
 
   // The multipliers of such a scene are the variables in the kernel of J.
-  double rate = 0;
-  double w = 0;
-  (void)dynamics.evaluate(1000, &z[0], &z[1], &rate, &w);
-  std::cout << "x = " << z[0] << ", y = " << z[1] / scene.field << ", w = " << w << '\n'
+  std::vector<double> rate(1);
+  std::vector<double> w(1);
+  const std::span at(z);
+  (void)dynamics.evaluate(1000, at.first(1), at.last(1), rate, w);
+  std::cout << "x = " << z[0] << ", y = " << z[1] / scene.field << ", w = " << w[0] << '\n'
             << "energy drift below 1e-10: " << (summary.energy_drift < 1e-10 ? "yes" : "no")
             << '\n';
 }

@@ -12,7 +12,7 @@ int main() {
   const carnot::Dynamics dynamics = carnot::make_dynamics(carnot::scenes::Heisenberg{}, "midpoint");
   std::vector<double> z{0, 0, 0, 0.1, 0.3, 1};  // q, then p; the flow advances them in place
   const carnot::StepPlan plan = carnot::StepPlan::equal(0, 100, 1000);
-  const carnot::FlowSummary summary = dynamics.monitored_flow(plan, z.data(), {});
+  const carnot::FlowSummary summary = dynamics.monitored_flow(plan, z, {});
   if (!summary.completed()) {
     std::cerr << summary.report.reason() << '\n';
     return 1;

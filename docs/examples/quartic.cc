@@ -34,7 +34,7 @@ int main() {
   const std::vector<double> q{1, 0};
   std::vector<double> v{0, 1};
   std::vector<double> p(2);
-  dynamics.momentum(0, q.data(), v.data(), nullptr, p.data());
+  dynamics.momentum(0, q, v, {}, p);
   std::cout << "p = (" << p[0] << ", " << p[1] << ")\n";
 
   // A long run keeps H: its error stays where it is.
@@ -43,7 +43,7 @@ int main() {
   for (const double duration : {10, 100, 1000}) {
     std::vector<double> z = start;
     const carnot::StepPlan plan = carnot::StepPlan::of_length(0, duration, 0.25);
-    const carnot::FlowSummary summary = dynamics.monitored_flow(plan, z.data(), {});
+    const carnot::FlowSummary summary = dynamics.monitored_flow(plan, z, {});
     if (!summary.completed()) return 1;
     std::cout << "to t = " << duration << ": energy drift " << summary.energy_drift << '\n';
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "carnot/flow/batch.h"
@@ -10,56 +11,78 @@
 
 namespace carnot {
 
-PointValues Dynamics::evaluate(
-    double t, const double* q, const double* p, double* q_dot, double* lambda) const {
+PointValues Dynamics::evaluate(double t,
+                               std::span<const double> q,
+                               std::span<const double> p,
+                               std::span<double> q_dot,
+                               std::span<double> lambda) const {
   const void* const at = system.get();
   // z, its rate, and y.
   std::vector<double> memory(4 * dof + functions->algebraic);
   double* const z = memory.data();
   double* const z_dot = z + 2 * dof;
   double* const y = z_dot + 2 * dof;
-  std::copy_n(q, dof, z);
-  std::copy_n(p, dof, z + dof);
+  std::copy(q.begin(), q.end(), z);
+  std::copy(p.begin(), p.end(), z + dof);
   functions->branch(at, y);
   PointValues values;
-  if (calls.regularity != nullptr) values.regularity = calls.regularity(at, t, q, p);
+  if (calls.regularity != nullptr) values.regularity = calls.regularity(at, t, q.data(), p.data());
   values.status = functions->rate(at, t, z, y, z_dot);
   if (values.status != RateStatus::kOk) return values;
-  std::fill_n(lambda, multipliers, 0.0);
-  values.status = functions->find_multipliers(at, t, q, p, y, lambda);
-  values.hamiltonian = functions->hamiltonian(at, t, q, p, y);
-  std::copy_n(z_dot, dof, q_dot);
+  std::fill(lambda.begin(), lambda.end(), 0.0);
+  values.status = functions->find_multipliers(at, t, q.data(), p.data(), y, lambda.data());
+  values.hamiltonian = functions->hamiltonian(at, t, q.data(), p.data(), y);
+  std::copy_n(z_dot, dof, q_dot.begin());
   return values;
 }
 
-bool Dynamics::midpoint(const double* qm, const double* v, double* terms, double* jacobian) const {
-  return midpoint_terms(*transcription, system.get(), qm, v, terms, jacobian);
+bool Dynamics::midpoint(std::span<const double> qm,
+                        std::span<const double> v,
+                        std::span<double> terms,
+                        std::span<double> jacobian) const {
+  return midpoint_terms(*transcription,
+                        system.get(),
+                        qm.data(),
+                        v.data(),
+                        terms.data(),
+                        jacobian.empty() ? nullptr : jacobian.data());
 }
 
 void Dynamics::discrete_lagrangian(double h,
-                                   const double* x,
-                                   double* gradient,
-                                   double* hessian) const {
-  carnot::discrete_lagrangian(*transcription, system.get(), h, x, gradient, hessian);
+                                   std::span<const double> x,
+                                   std::span<double> gradient,
+                                   std::span<double> hessian) const {
+  carnot::discrete_lagrangian(*transcription,
+                              system.get(),
+                              h,
+                              x.data(),
+                              gradient.data(),
+                              hessian.empty() ? nullptr : hessian.data());
 }
 
-void Dynamics::midpoint_multipliers(const double* q, const double* p, double* lambda) const {
+void Dynamics::midpoint_multipliers(std::span<const double> q,
+                                    std::span<const double> p,
+                                    std::span<double> lambda) const {
   if (transcription->gauge) {
-    gauged_multipliers(*transcription, system.get(), q, p, lambda);
+    gauged_multipliers(*transcription, system.get(), q.data(), p.data(), lambda.data());
     return;
   }
-  std::fill_n(lambda, transcribed, 0.0);
+  std::fill(lambda.begin(), lambda.end(), 0.0);
   std::vector<double> velocity(dof);
-  (void)evaluate(0, q, p, velocity.data(), lambda);
+  (void)evaluate(0, q, p, velocity, lambda);
 }
 
-BatchReport Dynamics::flow_batch(const StepPlan& plan, int count, double* z, int threads) const {
+BatchReport Dynamics::flow_batch(const StepPlan& plan,
+                                 int count,
+                                 std::span<double> z,
+                                 int threads) const {
+  const int size = 2 * dof;
   return batch_of(count, threads, [&](int i, BatchReport& report) {
-    double* const point = z + i * 2 * dof;
+    const auto point = z.subspan(static_cast<std::size_t>(i) * size, size);
     const FlowReport run = flow(plan, point);
     report.evaluations += run.evaluations;
     ++(run.completed() ? report.completed : report.failed);
-    if (!run.completed()) std::fill_n(point, 2 * dof, std::nan(""));
+    if (!run.completed()) std::fill(point.begin(), point.end(), std::nan(""));
   });
 }
 

@@ -1,13 +1,15 @@
 // A scene and a method behind a handful of function pointers: where templates end.
 //
 // Relaxation, shooting, NLopt and the apps are compiled once against this struct; make_dynamics.h
-// makes one. All arguments are plain double pointers: q, p of length n, lambda and g of length k,
-// z = (q, p) of length 2n. One indirect call per trajectory; inside it everything is inlined.
+// makes one. All arrays are spans of the caller's memory: q, its velocity and p have n entries,
+// lambda has k, z = (q, p) has 2n. One indirect call per trajectory; inside it everything is
+// inlined.
 #pragma once
 
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -50,28 +52,30 @@ struct Dynamics {
   Kernel kernel;  // the method
 
   // Advances z in place; on failure z is that of time_reached. No allocation.
-  [[nodiscard]] FlowReport flow(const StepPlan& plan, double* z) const {
-    return kernel.calls.flow(system.get(), kernel.method.get(), plan, z);
+  [[nodiscard]] FlowReport flow(const StepPlan& plan, std::span<double> z) const {
+    return kernel.calls.flow(system.get(), kernel.method.get(), plan, z.data());
   }
   // The same, and m = dz(end)/dz(start), row-major 2n x 2n. No allocation.
-  [[nodiscard]] FlowReport tangent_flow(const StepPlan& plan, double* z, double* m) const {
-    return kernel.calls.tangent_flow(system.get(), kernel.method.get(), plan, z, m);
+  [[nodiscard]] FlowReport tangent_flow(const StepPlan& plan,
+                                        std::span<double> z,
+                                        std::span<double> m) const {
+    return kernel.calls.tangent_flow(system.get(), kernel.method.get(), plan, z.data(), m.data());
   }
   // Advances z with an error of about `tolerance`, constant steps chosen by a trial; see
   // automatic_flow.h. Only where has_automatic_flow(). No allocation.
   [[nodiscard]] AutomaticFlow automatic_flow(double start,
                                              double duration,
                                              double tolerance,
-                                             double* z) const {
+                                             std::span<double> z) const {
     return kernel.calls.automatic_flow(
-        system.get(), kernel.method.get(), start, duration, tolerance, z);
+        system.get(), kernel.method.get(), start, duration, tolerance, z.data());
   }
   [[nodiscard]] bool has_automatic_flow() const { return kernel.calls.automatic_flow != nullptr; }
   // Advances `count` phase points, one after the other in z, over the plan; on `threads` threads
-  // (0: all cores). Those that fail become NaN.
+  // (0: all cores). Those that fail become NaN. z has 2n `count` entries.
   [[nodiscard]] BatchReport flow_batch(const StepPlan& plan,
                                        int count,
-                                       double* z,
+                                       std::span<double> z,
                                        int threads = 0) const;
   // The same with an error of about `tolerance` each, side by side with an explicit method of
   // order 8 and adaptive steps: fast, and not symplectic. Only where has_adaptive_batch().
@@ -79,40 +83,47 @@ struct Dynamics {
                                            double duration,
                                            double tolerance,
                                            int count,
-                                           double* z,
+                                           std::span<double> z,
                                            int threads = 0) const {
     return kernel.calls.adaptive_batch(
-        system.get(), kernel.method.get(), start, duration, tolerance, count, z, threads);
+        system.get(), kernel.method.get(), start, duration, tolerance, count, z.data(), threads);
   }
   [[nodiscard]] bool has_adaptive_batch() const { return kernel.calls.adaptive_batch != nullptr; }
   // The same as flow(), measured and recorded.
   [[nodiscard]] FlowSummary monitored_flow(const StepPlan& plan,
-                                           double* z,
+                                           std::span<double> z,
                                            const MonitorOptions& options) const {
-    return kernel.calls.monitored_flow(system.get(), kernel.method.get(), plan, z, options);
+    return kernel.calls.monitored_flow(system.get(), kernel.method.get(), plan, z.data(), options);
   }
   // H, q' and lambda at (t, q, p).
-  PointValues evaluate(
-      double t, const double* q, const double* p, double* q_dot, double* lambda) const;
+  PointValues evaluate(double t,
+                       std::span<const double> q,
+                       std::span<const double> p,
+                       std::span<double> q_dot,
+                       std::span<double> lambda) const;
   // Vanishes where the coordinates are singular; 1 for a scene where they nowhere are. A path from
   // one sign to the other passes such a point.
-  [[nodiscard]] double chart(const double* q) const {
-    return calls.chart != nullptr ? calls.chart(system.get(), q) : 1.0;
+  [[nodiscard]] double chart(std::span<const double> q) const {
+    return calls.chart != nullptr ? calls.chart(system.get(), q.data()) : 1.0;
   }
   // p of the velocity, which is projected on the admissible ones first. Returns the relative
   // violation before, NaN on failure.
-  double momentum(double t, const double* q, double* q_dot, const double* lambda, double* p) const {
-    return calls.momentum(system.get(), t, q, q_dot, lambda, p);
+  double momentum(double t,
+                  std::span<const double> q,
+                  std::span<double> q_dot,
+                  std::span<const double> lambda,
+                  std::span<double> p) const {
+    return calls.momentum(system.get(), t, q.data(), q_dot.data(), lambda.data(), p.data());
   }
   // The same Dynamics on the branch of H_y = 0 through the multipliers nearest to `lambda` at
   // (t, q, p); nothing where the scene has one branch only, or none is found.
   [[nodiscard]] std::optional<Dynamics> on_branch(double t,
-                                                  const double* q,
-                                                  const double* p,
-                                                  const double* lambda) const {
-    if (calls.branch == nullptr) return std::nullopt;
+                                                  std::span<const double> q,
+                                                  std::span<const double> p,
+                                                  std::span<const double> lambda) const {
+    if (!has_branches()) return std::nullopt;
     Dynamics dynamics = *this;
-    dynamics.system = calls.branch(system.get(), t, q, p, lambda);
+    dynamics.system = calls.branch(system.get(), t, q.data(), p.data(), lambda.data());
     if (dynamics.system == nullptr) return std::nullopt;
     return dynamics;
   }
@@ -120,30 +131,37 @@ struct Dynamics {
 
   // With holonomic constraints only, at z = (q, p): residuals; the nearest point of the manifold,
   // false where there is none; the orthogonal projector on its tangent space, 2n x 2n.
-  [[nodiscard]] HolonomicResiduals holonomic_residuals(double t, const double* z) const {
-    return calls.holonomic_residuals(system.get(), t, z);
+  [[nodiscard]] HolonomicResiduals holonomic_residuals(double t, std::span<const double> z) const {
+    return calls.holonomic_residuals(system.get(), t, z.data());
   }
-  [[nodiscard]] bool project_on_manifold(double t, double* z) const {
-    return calls.project_on_manifold(system.get(), t, z);
+  [[nodiscard]] bool project_on_manifold(double t, std::span<double> z) const {
+    return calls.project_on_manifold(system.get(), t, z.data());
   }
-  [[nodiscard]] bool tangent_projector(double t, const double* z, double* projector) const {
-    return calls.tangent_projector(system.get(), t, z, projector);
+  [[nodiscard]] bool tangent_projector(double t,
+                                       std::span<const double> z,
+                                       std::span<double> projector) const {
+    return calls.tangent_projector(system.get(), t, z.data(), projector.data());
   }
 
   // Whether there is a direct midpoint transcription; k stands for `transcribed` in what follows.
   [[nodiscard]] bool has_transcription() const { return transcription != nullptr; }
   // Terms of one midpoint interval at (qm, v): r (n), c (k), V (1), stacked; jacobian row-major
-  // (n + k + 1) x 2n with respect to (qm, v), may be null.
-  [[nodiscard]] bool midpoint(const double* qm,
-                              const double* v,
-                              double* terms,
-                              double* jacobian) const;
+  // (n + k + 1) x 2n with respect to (qm, v), or empty where it is not wanted.
+  [[nodiscard]] bool midpoint(std::span<const double> qm,
+                              std::span<const double> v,
+                              std::span<double> terms,
+                              std::span<double> jacobian = {}) const;
   // Gradient and Hessian of the discrete Lagrangian F_d with respect to x = (q0, q1, lambda), of
   // length 2n + k: the discrete momenta are p0 = -gradient[0..n), p1 = gradient[n..2n). The Hessian
-  // (symmetric, (2n + k)^2) may be null.
-  void discrete_lagrangian(double h, const double* x, double* gradient, double* hessian) const;
+  // is symmetric, (2n + k)^2, or empty where it is not wanted.
+  void discrete_lagrangian(double h,
+                           std::span<const double> x,
+                           std::span<double> gradient,
+                           std::span<double> hessian = {}) const;
   // The multipliers of the transcription at a phase point.
-  void midpoint_multipliers(const double* q, const double* p, double* lambda) const;
+  void midpoint_multipliers(std::span<const double> q,
+                            std::span<const double> p,
+                            std::span<double> lambda) const;
 
   struct Calls {
     Regularity (*regularity)(const void*, double, const double*, const double*);

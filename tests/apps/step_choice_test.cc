@@ -21,7 +21,7 @@ Dynamics heisenberg(const std::string& method) { return find_scene("heisenberg")
 
 std::vector<double> end_point(const Dynamics& dynamics, long count) {
   std::vector<double> z = kStart;
-  EXPECT_TRUE(dynamics.flow(StepPlan::equal(0, kTime, count), z.data()).completed());
+  EXPECT_TRUE(dynamics.flow(StepPlan::equal(0, kTime, count), z).completed());
   return z;
 }
 

@@ -39,7 +39,7 @@ double endpoint_error(const carnot::BoundaryValueProblem& problem,
                       const carnot::Geodesic& geodesic) {
   std::vector<double> z = problem.from;
   z.insert(z.end(), geodesic.p0.begin(), geodesic.p0.end());
-  const carnot::FlowReport report = problem.dynamics.flow(geodesic.plan, z.data());
+  const carnot::FlowReport report = problem.dynamics.flow(geodesic.plan, z);
   if (!report.completed()) return INFINITY;
   return std::hypot(z[0] - problem.to[0], z[1] - problem.to[1], z[2] - problem.to[2]);
 }

@@ -81,13 +81,13 @@ TEST(AutomaticFlow, ServesGaussMethodsOfOrderEightAndMore) {
   const std::array<double, 8> start = {1, 0.5, 0.3, 0.8, 0.7, 0.7, 0.5, 0.2};
   auto expected = start;
   const Dynamics exact = make_dynamics(scenes::VehicleCosine{});
-  ASSERT_TRUE(exact.flow(StepPlan::equal(0, 5, 200), expected.data()).completed());
+  ASSERT_TRUE(exact.flow(StepPlan::equal(0, 5, 200), expected).completed());
   for (const char* method : {"gauss8", "gauss10", "gauss12", "gauss14", "gauss20", "gauss24"}) {
     const Dynamics dynamics = make_dynamics(scenes::VehicleCosine{}, method);
     ASSERT_TRUE(dynamics.has_automatic_flow()) << method;
     for (const double tolerance : {1e-5, 1e-9}) {
       auto z = start;
-      const AutomaticFlow run = dynamics.automatic_flow(0, 5, tolerance, z.data());
+      const AutomaticFlow run = dynamics.automatic_flow(0, 5, tolerance, z);
       EXPECT_TRUE(run.reached) << method;
       EXPECT_LE((view<8>(z.data()) - view<8>(expected.data())).cwiseAbs().maxCoeff(),
                 kBeyond * tolerance)

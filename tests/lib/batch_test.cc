@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "carnot/make_dynamics.h"
@@ -38,8 +39,8 @@ TEST(Batch, TwoMethodsAgree) {
   for (const int count : {1, 7, 8, 9, 16, 25}) {
     auto exact = random_points(4, count, 3);
     auto fast = exact;
-    const BatchReport gauss = dynamics.flow_batch(StepPlan::equal(0, 4, 60), count, exact.data());
-    const BatchReport adaptive = dynamics.adaptive_batch(0, 4, 1e-11, count, fast.data());
+    const BatchReport gauss = dynamics.flow_batch(StepPlan::equal(0, 4, 60), count, exact);
+    const BatchReport adaptive = dynamics.adaptive_batch(0, 4, 1e-11, count, fast);
     EXPECT_EQ(gauss.completed, count);
     EXPECT_EQ(adaptive.completed, count);
     EXPECT_EQ(gauss.failed + adaptive.failed, 0);
@@ -55,11 +56,11 @@ TEST(Batch, ErrorFollowsTheTolerance) {
   const Dynamics dynamics = make_dynamics(scenes::Vehicle{});
   auto exact = random_points(4, 8, 4);
   const auto start = exact;
-  (void)dynamics.flow_batch(StepPlan::equal(0, 5, 80), 8, exact.data());
+  (void)dynamics.flow_batch(StepPlan::equal(0, 5, 80), 8, exact);
   double last = 1;
   for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
     auto z = start;
-    EXPECT_EQ(dynamics.adaptive_batch(0, 5, tolerance, 8, z.data()).completed, 8);
+    EXPECT_EQ(dynamics.adaptive_batch(0, 5, tolerance, 8, z).completed, 8);
     const double error = difference(exact, z);
     EXPECT_LE(error, 1000 * tolerance);
     EXPECT_LE(error, last / 10);
@@ -71,9 +72,9 @@ TEST(Batch, BackwardsUndoesForwards) {
   const Dynamics dynamics = make_dynamics(scenes::Unicycle{});
   const auto start = random_points(3, 8, 5);
   auto z = start;
-  (void)dynamics.adaptive_batch(0, 3, 1e-12, 8, z.data());
+  (void)dynamics.adaptive_batch(0, 3, 1e-12, 8, z);
   EXPECT_GE(difference(start, z), 0.1);
-  (void)dynamics.adaptive_batch(3, -3, 1e-12, 8, z.data());
+  (void)dynamics.adaptive_batch(3, -3, 1e-12, 8, z);
   EXPECT_LE(difference(start, z), 1e-9);
 }
 
@@ -83,11 +84,11 @@ TEST(Batch, DoesNotDependOnTheThreads) {
   auto three = one;
   auto gauss_one = one;
   auto gauss_three = one;
-  (void)dynamics.adaptive_batch(0, 3, 1e-9, 37, one.data(), 1);
-  (void)dynamics.adaptive_batch(0, 3, 1e-9, 37, three.data(), 3);
+  (void)dynamics.adaptive_batch(0, 3, 1e-9, 37, one, 1);
+  (void)dynamics.adaptive_batch(0, 3, 1e-9, 37, three, 3);
   EXPECT_EQ(one, three);
-  (void)dynamics.flow_batch(StepPlan::equal(0, 3, 20), 37, gauss_one.data(), 1);
-  (void)dynamics.flow_batch(StepPlan::equal(0, 3, 20), 37, gauss_three.data(), 3);
+  (void)dynamics.flow_batch(StepPlan::equal(0, 3, 20), 37, gauss_one, 1);
+  (void)dynamics.flow_batch(StepPlan::equal(0, 3, 20), 37, gauss_three, 3);
   EXPECT_EQ(gauss_one, gauss_three);
 }
 
@@ -97,11 +98,11 @@ TEST(Batch, OneFailureStaysOne) {
   const auto start = random_points(4, 11, 7);
   auto alone = start;
   for (int i = 0; i < 11; ++i) {
-    (void)dynamics.adaptive_batch(0, 3, 1e-10, 1, alone.data() + 8 * i, 1);
+    (void)dynamics.adaptive_batch(0, 3, 1e-10, 1, std::span(alone).subspan(8 * i, 8), 1);
   }
   auto z = start;
   z[8 * 4 + 2] = std::nan("");
-  const BatchReport report = dynamics.adaptive_batch(0, 3, 1e-10, 11, z.data(), 2);
+  const BatchReport report = dynamics.adaptive_batch(0, 3, 1e-10, 11, z, 2);
   EXPECT_EQ(report.completed, 10);
   EXPECT_EQ(report.failed, 1);
   for (int i = 0; i < 11; ++i) {
@@ -116,7 +117,7 @@ TEST(Batch, OneFailureStaysOne) {
   }
   auto gauss = start;
   gauss[8 * 4 + 2] = std::nan("");
-  const BatchReport by_plan = dynamics.flow_batch(StepPlan::equal(0, 3, 30), 11, gauss.data());
+  const BatchReport by_plan = dynamics.flow_batch(StepPlan::equal(0, 3, 30), 11, gauss);
   EXPECT_EQ(by_plan.completed, 10);
   EXPECT_EQ(by_plan.failed, 1);
   EXPECT_TRUE(std::isnan(gauss[8 * 4]));

@@ -46,7 +46,7 @@ TEST_F(MakeDynamics, FlowIsTheFlow) {
   auto expected = start_;
   const FlowReport by_template = flow(step, plan_, expected);
   Vector<double, 2 * n> z = start_.value;
-  const FlowReport report = dynamics_.flow(plan_, z.data());
+  const FlowReport report = dynamics_.flow(plan_, span_of(z));
   EXPECT_TRUE(report.completed());
   EXPECT_EQ(report.evaluations, by_template.evaluations);
   EXPECT_EQ(report.time_reached, 1);
@@ -62,7 +62,7 @@ TEST_F(MakeDynamics, TangentIsRowMajor) {
   ASSERT_TRUE(tangent_flow(step, plan_, expected, m, go_on).completed());
   Vector<double, 2 * n> z = start_.value;
   std::vector<double> rows(4 * n * n);
-  ASSERT_TRUE(dynamics_.tangent_flow(plan_, z.data(), rows.data()).completed());
+  ASSERT_TRUE(dynamics_.tangent_flow(plan_, span_of(z), rows).completed());
   EXPECT_EQ(z, expected.value);
   for (int i = 0; i < 2 * n; ++i) {
     for (int j = 0; j < 2 * n; ++j) {
@@ -74,10 +74,10 @@ TEST_F(MakeDynamics, TangentIsRowMajor) {
 TEST_F(MakeDynamics, AuditedFlowMeasuresTheSameRun) {
   Vector<double, 2 * n> plain = start_.value;
   Vector<double, 2 * n> audited = start_.value;
-  ASSERT_TRUE(dynamics_.flow(plan_, plain.data()).completed());
+  ASSERT_TRUE(dynamics_.flow(plan_, span_of(plain)).completed());
   MonitorOptions options;
   options.samples = 11;
-  const FlowSummary summary = dynamics_.monitored_flow(plan_, audited.data(), options);
+  const FlowSummary summary = dynamics_.monitored_flow(plan_, span_of(audited), options);
   ASSERT_TRUE(summary.completed());
   EXPECT_EQ(audited, plain);
   EXPECT_EQ(summary.trajectory.t.size(), 11U);
@@ -95,7 +95,7 @@ TEST_F(MakeDynamics, ProgressMayStop) {
     return fractions.size() < 3;
   };
   const FlowSummary summary =
-      dynamics_.monitored_flow(StepPlan::equal(0, 10, 10000), z.data(), options);
+      dynamics_.monitored_flow(StepPlan::equal(0, 10, 10000), span_of(z), options);
   EXPECT_EQ(summary.report.status, FlowStatus::kStopped);
   EXPECT_LT(summary.report.time_reached, 10);
   ASSERT_EQ(fractions.size(), 3U);
@@ -112,13 +112,14 @@ TEST_F(MakeDynamics, EvaluateAndMomentumAgree) {
     const auto p = test::random_vector<n>(generator, 2);
     Vector<double, n> v;
     Vector<double, k> lambda;
-    const PointValues values = dynamics_.evaluate(0, q.data(), p.data(), v.data(), lambda.data());
+    const PointValues values =
+        dynamics_.evaluate(0, span_of(q), span_of(p), span_of(v), span_of(lambda));
     ASSERT_EQ(values.status, RateStatus::kOk);
     EXPECT_NEAR(values.hamiltonian, p.dot(v) - system_.lagrangian(q, v), 64 * kEps);
     Vector<double, n> back;
     Vector<double, n> projected = v;
     const double violated =
-        dynamics_.momentum(0, q.data(), projected.data(), lambda.data(), back.data());
+        dynamics_.momentum(0, span_of(q), span_of(projected), span_of(lambda), span_of(back));
     EXPECT_LE(violated, 64 * kEps);
     EXPECT_LE((projected - v).cwiseAbs().maxCoeff(), 64 * kEps);
     EXPECT_LE((back - p).cwiseAbs().maxCoeff(), 256 * kEps);
@@ -131,11 +132,12 @@ TEST_F(MakeDynamics, MomentumProjectsTheVelocityAndSaysHowFar) {
   const double violated = system_.constraint(q, v).norm() / 5;
   const Vector<double, k> lambda(0, 0);
   Vector<double, n> p;
-  EXPECT_DOUBLE_EQ(dynamics_.momentum(0, q.data(), v.data(), lambda.data(), p.data()), violated);
+  EXPECT_DOUBLE_EQ(dynamics_.momentum(0, span_of(q), span_of(v), span_of(lambda), span_of(p)),
+                   violated);
   EXPECT_LE(system_.constraint(q, v).norm(), 8 * kEps);
   EXPECT_NEAR(v[0], 3, 8 * kEps);
   Vector<double, n> rest(0, 0, 0, 0);
-  EXPECT_EQ(dynamics_.momentum(0, q.data(), rest.data(), lambda.data(), p.data()), 0);
+  EXPECT_EQ(dynamics_.momentum(0, span_of(q), span_of(rest), span_of(lambda), span_of(p)), 0);
 }
 
 // A message of validate() names the parameter.

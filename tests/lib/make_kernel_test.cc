@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -49,9 +50,9 @@ Pair appell() {
   const scenes::Appell scene;
   Pair pair{make_dynamics(scene), make_inlined_dynamics(scene), {0, 0, 0, 0, 0, 0}, 1};
   std::vector<double> velocity{0.8, 0.6, 0.5};
-  const std::vector<double> lambda(pair.compiled.multipliers + 1, 0.1);
-  pair.compiled.momentum(
-      0, pair.start.data(), velocity.data(), lambda.data(), pair.start.data() + 3);
+  const std::vector<double> lambda(pair.compiled.multipliers, 0.1);
+  const std::span z(pair.start);
+  pair.compiled.momentum(0, z.first(3), velocity, lambda, z.last(3));
   return pair;
 }
 
@@ -91,8 +92,8 @@ constexpr double kRoundOff = 2000 * kEps;
 TEST_P(MakeKernel, FlowsAgree) {
   std::vector<double> a = pair_.start;
   std::vector<double> b = pair_.start;
-  ASSERT_TRUE(pair_.compiled.flow(plan_, a.data()).completed());
-  ASSERT_TRUE(pair_.inlined.flow(plan_, b.data()).completed());
+  ASSERT_TRUE(pair_.compiled.flow(plan_, a).completed());
+  ASSERT_TRUE(pair_.inlined.flow(plan_, b).completed());
   EXPECT_LE(distance(a, b), kRoundOff);
 }
 
@@ -102,8 +103,8 @@ TEST_P(MakeKernel, TangentsAgree) {
   std::vector<double> b = pair_.start;
   std::vector<double> ma(size * size);
   std::vector<double> mb(size * size);
-  ASSERT_TRUE(pair_.compiled.tangent_flow(plan_, a.data(), ma.data()).completed());
-  ASSERT_TRUE(pair_.inlined.tangent_flow(plan_, b.data(), mb.data()).completed());
+  ASSERT_TRUE(pair_.compiled.tangent_flow(plan_, a, ma).completed());
+  ASSERT_TRUE(pair_.inlined.tangent_flow(plan_, b, mb).completed());
   double largest = 1;
   for (const double x : mb) largest = std::max(largest, std::abs(x));
   EXPECT_LE(distance(ma, mb), kRoundOff * largest);
@@ -114,8 +115,8 @@ TEST_P(MakeKernel, MonitorsAgree) {
   std::vector<double> b = pair_.start;
   MonitorOptions options;
   options.samples = 5;
-  const FlowSummary one = pair_.compiled.monitored_flow(plan_, a.data(), options);
-  const FlowSummary other = pair_.inlined.monitored_flow(plan_, b.data(), options);
+  const FlowSummary one = pair_.compiled.monitored_flow(plan_, a, options);
+  const FlowSummary other = pair_.inlined.monitored_flow(plan_, b, options);
   ASSERT_TRUE(one.completed());
   ASSERT_TRUE(other.completed());
   EXPECT_NEAR(one.action, other.action, kRoundOff * (1 + std::abs(other.action)));
@@ -136,11 +137,10 @@ TEST_P(MakeKernel, AutomaticFlowsReachTheTolerance) {
   constexpr double kTolerance = 1e-9;
   std::vector<double> exact = pair_.start;
   const StepPlan fine = StepPlan::equal(0.1, pair_.duration, 512);
-  ASSERT_TRUE(pair_.inlined.flow(fine, exact.data()).completed());
+  ASSERT_TRUE(pair_.inlined.flow(fine, exact).completed());
   std::vector<double> z = pair_.start;
   ASSERT_TRUE(pair_.compiled.has_automatic_flow());
-  const AutomaticFlow run =
-      pair_.compiled.automatic_flow(0.1, pair_.duration, kTolerance, z.data());
+  const AutomaticFlow run = pair_.compiled.automatic_flow(0.1, pair_.duration, kTolerance, z);
   if (run.reached) {  // else it says so, and z is the start
     EXPECT_LE(distance(z, exact), kTolerance);
   } else {
@@ -154,7 +154,7 @@ TEST(MakeKernelFailure, SaysWhyARateFails) {
   const Dynamics dynamics = make_dynamics(scenes::Vehicle{});
   std::vector<double> z{0, 0, 0, 0, NAN, 0, 0, 0};
   const std::vector<double> start = z;
-  const FlowReport report = dynamics.flow(StepPlan::equal(0, 1, 4), z.data());
+  const FlowReport report = dynamics.flow(StepPlan::equal(0, 1, 4), z);
   EXPECT_FALSE(report.completed());
   EXPECT_EQ(report.last.rate, RateStatus::kNotFinite);
 }
@@ -164,10 +164,10 @@ TEST(MakeKernelFailure, SaysThatAnAngleIsTooFarForTangents) {
   const Dynamics dynamics = make_dynamics(FarHeading{});
   const std::vector<double> start{0, 0, 2e6, 1, 0.5, 0.2};
   std::vector<double> z = start;
-  EXPECT_TRUE(dynamics.flow(StepPlan::equal(0, 1, 4), z.data()).completed());
+  EXPECT_TRUE(dynamics.flow(StepPlan::equal(0, 1, 4), z).completed());
   z = start;
   std::vector<double> m(36);
-  const FlowReport report = dynamics.tangent_flow(StepPlan::equal(0, 1, 4), z.data(), m.data());
+  const FlowReport report = dynamics.tangent_flow(StepPlan::equal(0, 1, 4), z, m);
   EXPECT_FALSE(report.completed());
   EXPECT_EQ(report.last.rate, RateStatus::kFarAngle);
 }
@@ -184,12 +184,12 @@ TEST(MakeKernelBatch, AdvancesManyAsOne) {
   }
   const std::vector<double> starts = z;
   const BatchReport report =
-      pair.compiled.adaptive_batch(0, pair.duration, kTolerance, kCount, z.data(), 2);
+      pair.compiled.adaptive_batch(0, pair.duration, kTolerance, kCount, z, 2);
   EXPECT_EQ(report.completed, kCount);
   for (int i = 0; i < kCount; ++i) {
     std::vector<double> one(starts.begin() + 8 * i, starts.begin() + 8 * i + 8);
     const StepPlan plan = StepPlan::equal(0, pair.duration, 64);
-    ASSERT_TRUE(pair.inlined.flow(plan, one.data()).completed());
+    ASSERT_TRUE(pair.inlined.flow(plan, one).completed());
     const std::vector<double> of_batch(z.begin() + 8 * i, z.begin() + 8 * i + 8);
     EXPECT_LE(distance(of_batch, one), 1e4 * kTolerance);  // local errors add up and grow
   }
@@ -218,7 +218,7 @@ TEST(MakeKernelSize, MoreCoordinatesHaveAKernelOfTheirOwn) {
   const Dynamics dynamics = make_inlined_dynamics(Chain{});
   std::vector<double> z(2 * Chain::kDof, 0.0);
   z.back() = 1;  // the control, constant
-  ASSERT_TRUE(dynamics.flow(StepPlan::equal(0, 1, 2), z.data()).completed());
+  ASSERT_TRUE(dynamics.flow(StepPlan::equal(0, 1, 2), z).completed());
   double exact = 1;  // t^k / k! at t = 1, from the end of the chain
   for (int i = Chain::kDof - 1; i >= 0; --i) {
     exact /= Chain::kDof - i;

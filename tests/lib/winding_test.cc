@@ -83,8 +83,8 @@ TEST(Winding, KeepsTheEnergyOfATurningVehicle) {
   const auto plan = StepPlan::of_length(0, kStep * kSteps, kStep);
   auto z = start;
   auto audited = start;
-  ASSERT_TRUE(dynamics.flow(plan, z.data()).completed());
-  const FlowSummary summary = dynamics.monitored_flow(plan, audited.data(), {2, {}, {}});
+  ASSERT_TRUE(dynamics.flow(plan, z).completed());
+  const FlowSummary summary = dynamics.monitored_flow(plan, audited, {2, {}, {}});
   ASSERT_TRUE(summary.completed());
   EXPECT_EQ(z, audited);
   EXPECT_EQ(summary.trajectory.q.back()[3], z[3]);

@@ -56,7 +56,7 @@ class CutTimes : public testing::TestWithParam<Ray> {
     constexpr long kSteps = 128;
     std::vector<double> z{0, 0, 0};
     for (const double p : momentum(t)) z.push_back(p);
-    EXPECT_TRUE(problem.dynamics.flow(StepPlan::equal(0, 1, kSteps), z.data()).completed());
+    EXPECT_TRUE(problem.dynamics.flow(StepPlan::equal(0, 1, kSteps), z).completed());
     problem.to.assign(z.begin(), z.begin() + 3);
     return problem;
   }

@@ -48,8 +48,8 @@ TEST(Manifold, VelocitiesOfMomentaAreTangent) {
   const BoundaryValueProblem problem = test::satellite_quaternion({0, 1, 0, 0});
   std::vector<double> p{5, 0.3, -0.2, 0.1};
   ASSERT_TRUE(bring_to_manifold(problem, p));
-  std::vector<double> velocity(4), lambda(problem.dynamics.multipliers + 1);
-  problem.dynamics.evaluate(0, problem.from.data(), p.data(), velocity.data(), lambda.data());
+  std::vector<double> velocity(4), lambda(problem.dynamics.multipliers);
+  problem.dynamics.evaluate(0, problem.from, p, velocity, lambda);
   EXPECT_NEAR(velocity[0], 0, kRounded);  // Dh = (1, 0, 0, 0) at the attitude 1
   EXPECT_GT(norm(velocity), 0.01);
   const std::vector<double> there = p;

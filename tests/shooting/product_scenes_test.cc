@@ -57,7 +57,7 @@ class ProductScenesTest : public ::testing::TestWithParam<const char*> {
     std::normal_distribution<double> normal;
     std::vector<double> z(2 * flow.dof);
     for (double& x : z) x = normal(random);
-    EXPECT_TRUE(flow.project_on_manifold(0, z.data()));
+    EXPECT_TRUE(flow.project_on_manifold(0, z));
     return z;
   }
   using Attitude = Eigen::Map<Eigen::Vector4d>;
@@ -74,7 +74,7 @@ TEST_P(ProductScenesTest, StayOnTheManifoldWithoutForces) {
   EXPECT_EQ(flow.forced, 0);
   EXPECT_EQ(dynamics("rattle6").forced, 1);
   std::vector<double> z = start();
-  const FlowSummary run = flow.monitored_flow(StepPlan::equal(0, 100, 2000), z.data(), {});
+  const FlowSummary run = flow.monitored_flow(StepPlan::equal(0, 100, 2000), z, {});
   ASSERT_TRUE(run.completed());
   EXPECT_LE(run.holonomic_error, 1e3 * kEpsilon);  // a random walk of 2000 steps
 }
@@ -83,8 +83,8 @@ TEST_P(ProductScenesTest, MoveAsRattleMovesThem) {
   constexpr double kTolerance = 1e-10;  // the error of rattle6
   std::vector<double> z = start();
   std::vector<double> by_rattle = z;
-  ASSERT_TRUE(dynamics("gauss16").flow(StepPlan::equal(0, 2, 40), z.data()).completed());
-  ASSERT_TRUE(dynamics("rattle6").flow(StepPlan::equal(0, 2, 2000), by_rattle.data()).completed());
+  ASSERT_TRUE(dynamics("gauss16").flow(StepPlan::equal(0, 2, 40), z).completed());
+  ASSERT_TRUE(dynamics("rattle6").flow(StepPlan::equal(0, 2, 2000), by_rattle).completed());
   for (std::size_t i = 0; i < z.size(); ++i) EXPECT_NEAR(z[i], by_rattle[i], kTolerance) << i;
 }
 
@@ -102,8 +102,8 @@ TEST_P(ProductScenesTest, TheSizeOfTheQuaternionMovesApart) {
   attitude_of(off) *= kSize;
   momentum_of(off) /= kSize;
   momentum_of(off) += kOutward / kSize * attitude_of(on);
-  ASSERT_TRUE(flow.flow(plan, on.data()).completed());
-  ASSERT_TRUE(flow.flow(plan, off.data()).completed());
+  ASSERT_TRUE(flow.flow(plan, on).completed());
+  ASSERT_TRUE(flow.flow(plan, off).completed());
   // The rate of log |q|^2 is u3 = q.p / 2.
   const double size = kSize * std::exp(0.25 * kOutward * kTime);
   EXPECT_NEAR(attitude_of(off).norm(), size, kTolerance);

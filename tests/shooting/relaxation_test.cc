@@ -58,7 +58,7 @@ TEST(DiscreteNewton, SatisfiesTheMidpointRule) {
   constexpr double kTolerance = 1e-7;
   for (int i = 0; i < path.intervals; ++i) {
     const double h = problem.time / path.intervals;
-    ASSERT_TRUE(midpoint.flow(StepPlan::equal(i * h, h, 1), z.data()).completed());
+    ASSERT_TRUE(midpoint.flow(StepPlan::equal(i * h, h, 1), z).completed());
     for (int j = 0; j < 4; ++j) {
       EXPECT_NEAR(z[j], path.configuration(i + 1)[j], kTolerance) << "q, node " << i + 1;
       EXPECT_NEAR(z[4 + j], path.momentum(i + 1)[j], kTolerance) << "p, node " << i + 1;

@@ -56,9 +56,9 @@ TEST(Symmetry, MovableCoordinatesLeaveTheHamiltonianAlone) {
     std::vector<double> p{0.7, -0.3, 1.1, 0.4};
     q.resize(dynamics.dof);
     p.resize(dynamics.dof);
-    std::vector<double> velocity(dynamics.dof), lambda(dynamics.multipliers + 1);
+    std::vector<double> velocity(dynamics.dof), lambda(dynamics.multipliers);
     const auto energy = [&](const std::vector<double>& at) {
-      return dynamics.evaluate(0, at.data(), p.data(), velocity.data(), lambda.data()).hamiltonian;
+      return dynamics.evaluate(0, at, p, velocity, lambda).hamiltonian;
     };
     for (int j = 0; j < dynamics.dof; ++j) {
       std::vector<double> moved = q;

@@ -33,7 +33,7 @@ TEST(Verification, AcceptsWhatArrives) {
   // The error that is reported is that of an integration afresh.
   std::vector<double> z = problem.from;
   z.insert(z.end(), extremal->geodesic.p0.begin(), extremal->geodesic.p0.end());
-  ASSERT_TRUE(problem.dynamics.flow(extremal->geodesic.plan, z.data()).completed());
+  ASSERT_TRUE(problem.dynamics.flow(extremal->geodesic.plan, z).completed());
   EXPECT_EQ(largest_difference(z.data(), problem.to.data(), 4), extremal->geodesic.endpoint_error);
 }
 

@@ -54,7 +54,7 @@ TEST_P(WarmStartTest, ReachesTargetsNearby) {
       std::vector<double> z = problem.from;
       z.insert(z.end(), p0.begin(), p0.end());
       const StepPlan plan = StepPlan::equal(0, problem.time, near.plan.count);
-      ASSERT_TRUE(problem.dynamics.flow(plan, z.data()).completed());
+      ASSERT_TRUE(problem.dynamics.flow(plan, z).completed());
       for (std::size_t j = 0; j < n; ++j) EXPECT_NEAR(z[j], to[j], 2 * kTolerance);
     }
   }

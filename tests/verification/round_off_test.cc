@@ -72,7 +72,7 @@ double drift(const Scene& scene, long steps) {
     auto z = near(scene, generator);
     const double start = static_cast<double>(energy(system, z));
     const auto plan = StepPlan::of_length(0, kStep * static_cast<double>(steps), kStep);
-    const FlowSummary summary = dynamics.monitored_flow(plan, z.value.data(), {});
+    const FlowSummary summary = dynamics.monitored_flow(plan, span_of(z.value), {});
     if (!summary.completed()) return INFINITY;
     errors.push_back(summary.energy_drift / std::abs(start));
   }

@@ -197,7 +197,7 @@ void method_step(benchmark::State& state,
   std::vector<double> z;
   for (auto _ : state) {
     z = start;
-    if (!dynamics.flow(plan, z.data()).completed()) state.SkipWithError("a step failed");
+    if (!dynamics.flow(plan, z).completed()) state.SkipWithError("a step failed");
   }
   const double steps = static_cast<double>(state.iterations()) * static_cast<double>(plan.count);
   state.counters["per_step"] =

@@ -33,8 +33,7 @@ std::shared_ptr<Known> solve(const std::string& scene, const std::vector<double>
   const std::vector<double> p0 = find_geodesics(known.problem, options).geodesics.at(0).p0;
   known.z.insert(known.z.end(), p0.begin(), p0.end());
   std::vector<double> z = known.z;
-  known.plan =
-      known.problem.dynamics.automatic_flow(0, known.problem.time, kTolerance, z.data()).plan;
+  known.plan = known.problem.dynamics.automatic_flow(0, known.problem.time, kTolerance, z).plan;
   known.warm = std::make_unique<WarmStart>(known.problem, p0, kTolerance);
   return std::make_shared<Known>(std::move(known));
 }
@@ -45,8 +44,8 @@ void flow(benchmark::State& state, const Known& known, bool with_tangent) {
   for (auto _ : state) {
     z = known.z;
     const Dynamics& dynamics = known.problem.dynamics;
-    const FlowReport report = with_tangent ? dynamics.tangent_flow(known.plan, z.data(), m.data())
-                                           : dynamics.flow(known.plan, z.data());
+    const FlowReport report =
+        with_tangent ? dynamics.tangent_flow(known.plan, z, m) : dynamics.flow(known.plan, z);
     if (!report.completed()) state.SkipWithError("a step failed");
   }
 }

@@ -21,9 +21,8 @@ int end_error(const gsl_vector* p0, void* opaque, gsl_vector* error, gsl_matrix*
   for (int j = 0; j < n; ++j) z.push_back(gsl_vector_get(p0, j));
   std::vector<double> tangent(jacobian != nullptr ? 4 * n * n : 0);
   const StepPlan plan = StepPlan::equal(0, problem.time, kSteps);
-  const FlowReport report = jacobian != nullptr
-                                ? problem.dynamics.tangent_flow(plan, z.data(), tangent.data())
-                                : problem.dynamics.flow(plan, z.data());
+  const FlowReport report = jacobian != nullptr ? problem.dynamics.tangent_flow(plan, z, tangent)
+                                                : problem.dynamics.flow(plan, z);
   if (!report.completed()) return GSL_EFAILED;
   for (int row = 0; row < n; ++row) {
     if (error != nullptr) gsl_vector_set(error, row, z[row] - problem.to[row]);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <coin/IpIpoptApplication.hpp>
 #include <coin/IpTNLP.hpp>
+#include <span>
 
 #include "benchmark/peers/boundary_peers.h"
 
@@ -73,14 +74,14 @@ class Transcription : public Ipopt::TNLP {
     value = 0;
     std::vector<double> middle(n_), velocity(n_), terms(n_ + k_ + 1);
     for (int i = 0; i < intervals_; ++i) {
-      evaluate(i, x, nullptr, nullptr);
+      evaluate(i, x, nullptr, {});
       double kinetic = 0;  // v.L_v / 2, with L_v from both ends
       for (int j = 0; j < n_; ++j) {
         velocity[j] = (x_[n_ + j] - x_[j]) / h_;
         middle[j] = 0.5 * (x_[j] + x_[n_ + j]);
         kinetic += 0.25 * velocity[j] * (gradient_[n_ + j] - gradient_[j]);
       }
-      if (!dynamics_.midpoint(middle.data(), velocity.data(), terms.data(), nullptr)) return false;
+      if (!dynamics_.midpoint(middle, velocity, terms)) return false;
       value += h_ * (kinetic - terms.back());
     }
     return std::isfinite(value);
@@ -89,7 +90,7 @@ class Transcription : public Ipopt::TNLP {
   bool eval_grad_f(Index n, const Number* x, bool /*new_x*/, Number* gradient) override {
     std::fill_n(gradient, n, 0.0);
     for (int i = 0; i < intervals_; ++i) {
-      evaluate(i, x, nullptr, nullptr);
+      evaluate(i, x, nullptr, {});
       for (int a = 0; a < 2 * n_; ++a) {
         if (unknown(i, a) >= 0) gradient[unknown(i, a)] += gradient_[a];
       }
@@ -99,7 +100,7 @@ class Transcription : public Ipopt::TNLP {
 
   bool eval_g(Index /*n*/, const Number* x, bool /*new_x*/, Index /*m*/, Number* g) override {
     for (int i = 0; i < intervals_; ++i) {
-      evaluate(i, x, nullptr, nullptr);
+      evaluate(i, x, nullptr, {});
       std::copy(gradient_.begin() + 2 * n_, gradient_.end(), g + i * k_);
     }
     return true;
@@ -115,7 +116,7 @@ class Transcription : public Ipopt::TNLP {
                   Number* values) override {
     int at = 0;
     for (int i = 0; i < intervals_; ++i) {
-      if (values != nullptr) evaluate(i, x, nullptr, hessian_.data());
+      if (values != nullptr) evaluate(i, x, nullptr, hessian_);
       each_jacobian(i, [&](int a, int b, int row, int column) {
         if (values != nullptr) {
           values[at] = hessian_[a * m_ + b];
@@ -143,8 +144,8 @@ class Transcription : public Ipopt::TNLP {
     int at = 0;
     for (int i = 0; i < intervals_; ++i) {
       if (values != nullptr) {
-        evaluate(i, x, lambda + i * k_, weighted_.data());
-        evaluate(i, x, nullptr, hessian_.data());
+        evaluate(i, x, lambda + i * k_, weighted_);
+        evaluate(i, x, nullptr, hessian_);
       }
       each_hessian(i, [&](int a, int b, int row, int column) {
         if (values != nullptr) {
@@ -177,12 +178,12 @@ class Transcription : public Ipopt::TNLP {
 
  private:
   // F and its derivatives on interval i, at multipliers zero where there are none.
-  void evaluate(int i, const Number* x, const Number* lambda, double* hessian) {
+  void evaluate(int i, const Number* x, const Number* lambda, std::span<double> hessian) {
     for (int a = 0; a < 2 * n_; ++a) {
       x_[a] = unknown(i, a) >= 0 ? x[unknown(i, a)] : q_[i * n_ + a];
     }
     for (int j = 0; j < k_; ++j) x_[2 * n_ + j] = lambda != nullptr ? lambda[j] : 0;
-    dynamics_.discrete_lagrangian(h_, x_.data(), gradient_.data(), hessian);
+    dynamics_.discrete_lagrangian(h_, x_, gradient_, hessian);
   }
 
   // Index of coordinate a of interval i, of both its ends, among the unknowns; -1 at a fixed end.

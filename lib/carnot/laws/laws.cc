@@ -6,8 +6,10 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <span>
 
 #include "carnot/laws/tangent_map.h"
+#include "carnot/numerics/linear_algebra.h"
 
 namespace carnot {
 namespace {
@@ -40,7 +42,7 @@ std::optional<std::vector<double>> end_of(const Dynamics& dynamics,
                                           double duration,
                                           long count) {
   std::vector<double> z = start.z;
-  const FlowReport report = dynamics.flow(StepPlan::equal(start.t, duration, count), z.data());
+  const FlowReport report = dynamics.flow(StepPlan::equal(start.t, duration, count), z);
   if (!report.completed() || !finite(z)) return std::nullopt;
   return z;
 }
@@ -59,13 +61,13 @@ std::optional<Continuation> follow(const Dynamics& dynamics,
   MonitorOptions ends;
   ends.samples = 2;
   const StepPlan plan = StepPlan::equal(start.t, duration, count);
-  const FlowSummary run = dynamics.monitored_flow(plan, end.start.z.data(), ends);
+  const FlowSummary run = dynamics.monitored_flow(plan, end.start.z, ends);
   if (!run.completed() || !finite(end.start.z)) return std::nullopt;
   end.start.t = plan.end;
   if (dynamics.has_branches()) {
-    const double* q = end.start.z.data();
-    const auto branch =
-        dynamics.on_branch(end.start.t, q, q + dynamics.dof, run.trajectory.lambda.back().data());
+    const std::span<const double> z(end.start.z);
+    const auto branch = dynamics.on_branch(
+        end.start.t, z.first(dynamics.dof), z.subspan(dynamics.dof), run.trajectory.lambda.back());
     if (!branch) return std::nullopt;
     end.dynamics = *branch;
   }
@@ -83,8 +85,9 @@ bool even_in_momentum(const Dynamics& dynamics, PhaseStart at) {
   std::vector<double> backward(dynamics.dof);
   std::vector<double> lambda(dynamics.multipliers);
   const auto evaluate = [&](std::vector<double>& velocity) {
-    const double* q = at.z.data();
-    return dynamics.evaluate(at.t, q, q + dynamics.dof, velocity.data(), lambda.data());
+    const std::span<const double> z(at.z);
+    return dynamics.evaluate(
+        at.t, z.first(dynamics.dof), z.subspan(dynamics.dof), velocity, lambda);
   };
   const PointValues there = evaluate(forward);
   flip(dynamics, at.z);
@@ -200,7 +203,7 @@ double measure_symplecticity(const Dynamics& dynamics,
   if (map.status != FlowStatus::kCompleted) return kNotMeasured;
   if (dynamics.forced == 0) return map.relative_defect;
   Square p(2 * n, 2 * n);  // symmetric
-  if (!dynamics.tangent_projector(start.t, start.z.data(), p.data())) return kNotMeasured;
+  if (!dynamics.tangent_projector(start.t, start.z, span_of(p))) return kNotMeasured;
   const auto form = [n](const Square& a) {  // a'J a
     const Square product = a.bottomRows(n).transpose() * a.topRows(n);
     return Square(product - product.transpose());
@@ -253,7 +256,7 @@ EnergyLaw measure_energy(const Dynamics& dynamics,
   options.samples = std::min(steps, kMostSamples) + 1;
   options.progress = progress;
   const FlowSummary run =
-      dynamics.monitored_flow(StepPlan::equal(start.t, duration, steps), z.data(), options);
+      dynamics.monitored_flow(StepPlan::equal(start.t, duration, steps), z, options);
   law.report = run.report;
   law.constraint_error = run.constraint_error;
   law.holonomic_error = run.holonomic_error;
@@ -267,7 +270,7 @@ EnergyLaw measure_energy(const Dynamics& dynamics,
   if (!dynamics.autonomous) {
     std::vector<double> early = start.z;
     const StepPlan tenth = StepPlan::equal(start.t, duration / kEarly, steps / kEarly);
-    const FlowSummary first = dynamics.monitored_flow(tenth, early.data(), MonitorOptions());
+    const FlowSummary first = dynamics.monitored_flow(tenth, early, MonitorOptions());
     law.growth = ratio(run.energy_balance, first.energy_balance);
     return law;
   }
@@ -292,7 +295,7 @@ double measure_midpoint_constraint(const Dynamics& dynamics,
   const StepPlan plan = StepPlan::equal(start.t, step * static_cast<double>(steps), steps);
   MonitorOptions nodes;
   nodes.samples = steps + 1;
-  const FlowSummary run = dynamics.monitored_flow(plan, z.data(), nodes);
+  const FlowSummary run = dynamics.monitored_flow(plan, z, nodes);
   if (!run.completed()) return kNotMeasured;
   double worst = 0;
   std::vector<double> gradient(2 * n + k);
@@ -303,7 +306,7 @@ double measure_midpoint_constraint(const Dynamics& dynamics,
     std::vector<double> x = q0;
     x.insert(x.end(), q1.begin(), q1.end());
     x.resize(2 * n + k, 0.0);
-    dynamics.discrete_lagrangian(step, x.data(), gradient.data(), nullptr);
+    dynamics.discrete_lagrangian(step, x, gradient);
     double speed = 1;
     for (int j = 0; j < n; ++j) speed = std::max(speed, std::abs((q1[j] - q0[j]) / step));
     for (int j = 0; j < k; ++j) {

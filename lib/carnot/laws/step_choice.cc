@@ -42,8 +42,8 @@ struct Trials {
     const StepPlan plan = StepPlan::equal(start, duration, count);
     MonitorOptions audit;
     audit.progress = progress;
-    const FlowReport report = progress ? dynamics.monitored_flow(plan, z.data(), audit).report
-                                       : dynamics.flow(plan, z.data());
+    const FlowReport report =
+        progress ? dynamics.monitored_flow(plan, z, audit).report : dynamics.flow(plan, z);
     choice.evaluations += report.evaluations;
     if (report.status == FlowStatus::kStopped) choice.status = StepChoiceStatus::kStopped;
     if (!report.completed()) choice.message = report.reason();
@@ -106,7 +106,7 @@ StepChoice choose_steps(const Dynamics& dynamics,
   constexpr int kOrderOfTrials = 16;
   if (dynamics.has_automatic_flow() && dynamics.order == kOrderOfTrials) {
     std::vector<double> end = z;
-    const AutomaticFlow run = dynamics.automatic_flow(start, duration, tolerance, end.data());
+    const AutomaticFlow run = dynamics.automatic_flow(start, duration, tolerance, end);
     choice.evaluations += run.evaluations;
     if (run.reached) {
       choice.count = run.plan.count;

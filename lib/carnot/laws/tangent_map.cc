@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 
+#include "carnot/numerics/linear_algebra.h"
+
 namespace carnot {
 namespace {
 
@@ -35,7 +37,7 @@ TangentMap tangent_along(const Dynamics& dynamics,
   for (long first = 0; first < plan.count && map.status == FlowStatus::kCompleted;) {
     const long last = std::min(plan.count, first + kPiece);
     Square factor(2 * n, 2 * n);
-    map.status = dynamics.tangent_flow(piece(plan, first, last), z.data(), factor.data()).status;
+    map.status = dynamics.tangent_flow(piece(plan, first, last), z, span_of(factor)).status;
     m = factor * m;
     first = last;
     const double fraction = static_cast<double>(last) / static_cast<double>(plan.count);
@@ -46,7 +48,7 @@ TangentMap tangent_along(const Dynamics& dynamics,
   Square defect = m.transpose() * j * m - j;
   if (dynamics.forced > 0) {
     Square projector(2 * n, 2 * n);
-    if (!dynamics.tangent_projector(plan.start, start.data(), projector.data())) {
+    if (!dynamics.tangent_projector(plan.start, start, span_of(projector))) {
       map.status = FlowStatus::kStepFailed;
     }
     defect = projector.transpose() * defect * projector;

@@ -28,9 +28,8 @@ void check_end(const char* name, const std::vector<double>& q, const Dynamics& d
 RateStatus end_status(const Dynamics& dynamics, const std::vector<double>& q) {
   const std::vector<double> zero(dynamics.dof, 0.0);
   std::vector<double> q_dot(dynamics.dof);
-  std::vector<double> lambda(dynamics.multipliers + 1);
-  const RateStatus status =
-      dynamics.evaluate(0, q.data(), zero.data(), q_dot.data(), lambda.data()).status;
+  std::vector<double> lambda(dynamics.multipliers);
+  const RateStatus status = dynamics.evaluate(0, q, zero, q_dot, lambda).status;
   // Some systems are of index 1 away from rest only.
   const bool at_rest = status == RateStatus::kNotIndexOne || status == RateStatus::kNoSolution;
   return at_rest ? RateStatus::kOk : status;

@@ -50,7 +50,7 @@ bool stays(const BoundaryValueProblem& problem) {
   std::vector<double> z = problem.from;
   z.resize(2 * problem.from.size(), 0.0);
   const StepPlan plan = StepPlan::equal(0, problem.time, kFewSteps);
-  const bool completed = problem.dynamics.flow(plan, z.data()).completed();
+  const bool completed = problem.dynamics.flow(plan, z).completed();
   for (std::size_t j = 0; j < problem.from.size(); ++j) {
     if (!(std::abs(z[j] - problem.from[j]) <= kRestRoundOff * (1 + std::abs(z[j])))) return false;
   }

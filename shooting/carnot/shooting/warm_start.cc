@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 
 #include "carnot/shooting/shoot/end_point.h"
@@ -19,8 +20,7 @@ constexpr long kSteps = 64;  // of the tangent flow, and where there is no choic
 // The steps that reach the tolerance along the extremal from z.
 StepPlan plan_for(const BoundaryValueProblem& problem, std::vector<double> z, double tolerance) {
   if (problem.dynamics.has_automatic_flow()) {
-    const AutomaticFlow flow =
-        problem.dynamics.automatic_flow(0, problem.time, tolerance, z.data());
+    const AutomaticFlow flow = problem.dynamics.automatic_flow(0, problem.time, tolerance, z);
     if (flow.reached) return flow.plan;
   }
   return StepPlan::equal(0, problem.time, kSteps);
@@ -111,7 +111,7 @@ bool WarmStart::Implementation::end_of(const StepPlan& plan, const Vector& p0, V
   std::array<double, 2 * EndPointModel::kMostDof> z{};
   std::copy(problem_.from.begin(), problem_.from.end(), z.begin());
   std::copy(p0.data(), p0.data() + n, z.begin() + n);
-  if (!problem_.dynamics.flow(plan, z.data()).completed()) return false;
+  if (!problem_.dynamics.flow(plan, std::span(z).first(2 * n)).completed()) return false;
   q = Eigen::Map<const Vector>(z.data(), n);
   return q.allFinite();
 }

@@ -40,7 +40,7 @@ std::optional<Knots> split(const BoundaryValueProblem& problem, const Knots& kno
     std::vector<double> z(knots.at(i), knots.at(i) + size);
     finer.z.insert(finer.z.end(), z.begin(), z.end());
     const StepPlan plan = knot_plan(problem, finer.segments, 2 * i, steps);
-    if (!problem.dynamics.flow(plan, z.data()).completed()) return std::nullopt;
+    if (!problem.dynamics.flow(plan, z).completed()) return std::nullopt;
     finer.z.insert(finer.z.end(), z.begin(), z.end());
   }
   finer.z.insert(finer.z.end(), knots.at(knots.segments), knots.at(knots.segments) + size);

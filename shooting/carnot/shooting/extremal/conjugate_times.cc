@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "carnot/numerics/linear_algebra.h"
 #include "carnot/shooting/linear/dense.h"
 #include "carnot/shooting/linear/lagrangian_plane.h"
 #include "carnot/shooting/linear/round_off.h"
@@ -94,7 +95,7 @@ class Planes {
     to.t = t;
     to.z = from.z;
     const StepPlan plan = StepPlan::equal(from.t, t - from.t, 1);
-    if (!dynamics_.tangent_flow(plan, to.z.data(), m.data()).completed()) return false;
+    if (!dynamics_.tangent_flow(plan, to.z, span_of(m)).completed()) return false;
     MatrixXd carried = from.plane;
     carried.topRows(n) = product(s_, carried.topRows(n));
     carried.bottomRows(n) = product(inverse_, carried.bottomRows(n));
@@ -150,7 +151,7 @@ std::optional<Graph> typical_graph(double begin,
       const double t = i * piece + static_cast<double>(j) * h;
       RowMajor m(2 * n, 2 * n);
       const StepPlan plan = StepPlan::equal(t, h, 1);
-      if (!problem.dynamics.tangent_flow(plan, z.data(), m.data()).completed()) return std::nullopt;
+      if (!problem.dynamics.tangent_flow(plan, z, span_of(m)).completed()) return std::nullopt;
       plane = orthonormal(product(units.map(m), plane));
       if (t + h < first) continue;
       Graph next = graph_of(plane);

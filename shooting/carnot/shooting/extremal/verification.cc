@@ -45,7 +45,7 @@ double knot_defect(const BoundaryValueProblem& problem, const Knots& knots, long
   for (int i = 0; i < knots.segments; ++i) {
     std::vector<double> z(knots.at(i), knots.at(i) + 2 * n);
     const StepPlan plan = knot_plan(problem, knots.segments, i, steps);
-    if (!problem.dynamics.flow(plan, z.data()).completed()) {
+    if (!problem.dynamics.flow(plan, z).completed()) {
       return std::numeric_limits<double>::infinity();
     }
     const bool last = i + 1 == knots.segments;
@@ -72,7 +72,7 @@ long enough_steps(const BoundaryValueProblem& problem,
       for (const double x : coarse) scale = std::max(scale, std::abs(x));
       const auto run = [&](long count, std::vector<double>& z) {
         const StepPlan plan = knot_plan(problem, knots.segments, i, count);
-        return problem.dynamics.flow(plan, z.data()).completed();
+        return problem.dynamics.flow(plan, z).completed();
       };
       settled = run(steps, coarse) && run(2 * steps, fine);
       const double allowed = std::max(kFlowRoundOff * scale, 1e-3 * tolerance);
@@ -148,13 +148,10 @@ bool measure(const BoundaryValueProblem& problem, long steps, Extremal& extremal
   const FlowSummary measured = survey(problem, extremal.knots, steps, kPathIntervals + 1);
   if (!measured.completed()) return false;
   std::vector<double> velocity(problem.dynamics.dof);
-  std::vector<double> lambda(problem.dynamics.multipliers + 1);
   Geodesic& geodesic = extremal.geodesic;
   geodesic.p0 = extremal.knots.p0();
-  problem.dynamics.evaluate(
-      0, problem.from.data(), geodesic.p0.data(), velocity.data(), lambda.data());
-  lambda.pop_back();
-  geodesic.lambda0 = lambda;
+  geodesic.lambda0.assign(problem.dynamics.multipliers, 0.0);
+  problem.dynamics.evaluate(0, problem.from, geodesic.p0, velocity, geodesic.lambda0);
   geodesic.action = measured.action;
   if (std::isfinite(measured.length)) geodesic.length = measured.length;
   geodesic.constraint_error = measured.constraint_error;

@@ -157,7 +157,7 @@ class Descent {
         middle[j] = 0.5 * (path.configuration(i)[j] + path.configuration(i + 1)[j]);
         v[j] = (path.configuration(i + 1)[j] - path.configuration(i)[j]) / h_;
       }
-      if (!problem_.dynamics.midpoint(middle.data(), v.data(), terms.data(), nullptr)) continue;
+      if (!problem_.dynamics.midpoint(middle, v, terms)) continue;
       for (int j = 0; j < n; ++j) sum += h_ * terms[j] * terms[j];
     }
     return std::sqrt(sum);

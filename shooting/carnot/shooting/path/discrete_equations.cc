@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace carnot::internal {
 
@@ -32,7 +33,7 @@ double DiscreteEquations::evaluate(const Path& path,
   for (int i = 0; i < intervals_; ++i) {
     path.gather(i, k_, x_.data());
     dynamics_.discrete_lagrangian(
-        h_, x_.data(), gradient_.data(), matrix != nullptr ? hessian_.data() : nullptr);
+        h_, x_, gradient_, matrix != nullptr ? hessian_ : std::span<double>());
     if (matrix != nullptr && weights.metric != 0) set_slopes(path, i);
     for (int a = 0; a < m_; ++a) {
       if (a < 2 * n_) largest = std::max(largest, std::abs(gradient_[a]));
@@ -97,7 +98,7 @@ void DiscreteEquations::set_slopes(const Path& path, int i) {
     middle_[j] = 0.5 * (path.configuration(i)[j] + path.configuration(i + 1)[j]);
     velocity_[j] = (path.configuration(i + 1)[j] - path.configuration(i)[j]) / h_;
   }
-  if (!dynamics_.midpoint(middle_.data(), velocity_.data(), terms_.data(), by_middle_.data())) {
+  if (!dynamics_.midpoint(middle_, velocity_, terms_, by_middle_)) {
     std::fill(slopes_.begin(), slopes_.end(), std::numeric_limits<double>::quiet_NaN());
     return;
   }

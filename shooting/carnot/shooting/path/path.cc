@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace carnot::internal {
 
@@ -13,7 +14,7 @@ void fill_momenta(const Dynamics& dynamics, double h, Path& path) {
   std::vector<double> gradient(2 * n + k);
   for (int i = 0; i < path.intervals; ++i) {
     path.gather(i, k, x.data());
-    dynamics.discrete_lagrangian(h, x.data(), gradient.data(), nullptr);
+    dynamics.discrete_lagrangian(h, x, gradient);
     const double at_left = i == 0 ? 1 : 0.5;
     const double at_right = i + 1 == path.intervals ? 1 : 0.5;
     for (int j = 0; j < n; ++j) {
@@ -24,7 +25,8 @@ void fill_momenta(const Dynamics& dynamics, double h, Path& path) {
 }
 
 bool same_chart(const Dynamics& dynamics, const double* a, const double* b) {
-  return dynamics.chart(a) * dynamics.chart(b) > 0;
+  const auto n = static_cast<std::size_t>(dynamics.dof);
+  return dynamics.chart({a, n}) * dynamics.chart({b, n}) > 0;
 }
 
 bool in_one_chart(const Dynamics& dynamics, const Path& path) {
@@ -38,7 +40,9 @@ bool skims_chart_end(const Dynamics& dynamics, const Path& path) {
   constexpr double kFactor = 2.5;
   constexpr double kBelowEnds = 0.5;
   if (!in_one_chart(dynamics, path)) return false;
-  const auto chart = [&](int i) { return std::abs(dynamics.chart(path.configuration(i))); };
+  const auto chart = [&](int i) {
+    return std::abs(dynamics.chart(std::span(path.configuration(i), path.dof)));
+  };
   const double ends = std::min(chart(0), chart(path.intervals));
   for (int i = 0; i < path.intervals; ++i) {
     const double here = chart(i);
@@ -58,7 +62,7 @@ double discrete_action(const Dynamics& dynamics, double h, const Path& path) {
       middle[j] = 0.5 * (path.configuration(i)[j] + path.configuration(i + 1)[j]);
       velocity[j] = (path.configuration(i + 1)[j] - path.configuration(i)[j]) / h;
     }
-    if (!dynamics.midpoint(middle.data(), velocity.data(), terms.data(), nullptr)) continue;
+    if (!dynamics.midpoint(middle, velocity, terms)) continue;
     for (int j = 0; j < n; ++j) action += 0.5 * h * terms[j] * terms[j];
     action -= h * terms[n + dynamics.transcribed];
   }

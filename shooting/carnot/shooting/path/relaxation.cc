@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "carnot/shooting/linear/chain_least_squares.h"
 
@@ -41,13 +42,13 @@ class Interval {
       qm_[i] = 0.5 * (q[i] + q[n + i]);
       v_[i] = (q[n + i] - q[i]) / shared_.h;
     }
-    double* derivative = jacobian != nullptr ? derivative_.data() : nullptr;
-    if (!shared_.dynamics.midpoint(qm_.data(), v_.data(), terms_.data(), derivative)) return false;
+    const auto derivative = jacobian != nullptr ? derivative_ : std::span<double>();
+    if (!shared_.dynamics.midpoint(qm_, v_, terms_, derivative)) return false;
     for (int row = 0; row < shared_.residuals(); ++row) {
       const double weight = scale(row, lambda, residuals);
       if (!std::isfinite(weight) || !std::isfinite(residuals[row])) return false;
       if (jacobian == nullptr) continue;
-      const double* d = derivative + row * 2 * n;
+      const double* d = &derivative[row * 2 * n];
       double* to = jacobian + row * 2 * n;
       for (int i = 0; i < n; ++i) {
         const double by_q = 0.5 * weight * d[i];
@@ -110,7 +111,7 @@ PathTerms terms_of(const Dynamics& dynamics, double h, const Path& path) {
       v[j] = (path.configuration(i + 1)[j] - path.configuration(i)[j]) / h;
       v2 += v[j] * v[j];
     }
-    if (!dynamics.midpoint(qm.data(), v.data(), terms.data(), nullptr)) continue;
+    if (!dynamics.midpoint(qm, v, terms)) continue;
     double r2 = 0;
     double c2 = 0;
     for (int j = 0; j < n; ++j) r2 += terms[j] * terms[j];

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "carnot/numerics/linear_algebra.h"
 #include "carnot/shooting/linear/dense.h"
 #include "carnot/shooting/problem/scales.h"
 
@@ -18,7 +19,7 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 // The admissible directions as smooth vector fields, and their brackets.
 class Fields {
  public:
-  Fields(const Dynamics& dynamics, const double* q, double step)
+  Fields(const Dynamics& dynamics, const std::vector<double>& q, double step)
       : dynamics_(dynamics), metric_(metric_at(q)), step_(step) {}
 
   [[nodiscard]] const MatrixXd& metric() const { return metric_; }
@@ -38,8 +39,8 @@ class Fields {
     if (second != kNone) return derivative(second, first, q) - derivative(first, second, q);
     const VectorXd p = VectorXd::Unit(q.size(), first);
     VectorXd velocity(q.size());
-    VectorXd lambda(dynamics_.multipliers);
-    dynamics_.evaluate(0, q.data(), p.data(), velocity.data(), lambda.data());
+    std::vector<double> lambda(dynamics_.multipliers);
+    dynamics_.evaluate(0, span_of(q), span_of(p), span_of(velocity), lambda);
     return velocity;
   }
 
@@ -52,13 +53,13 @@ class Fields {
 
   // M + G'G. The metric M itself may be singular on what the constraints forbid. The result is NaN
   // where they cannot be evaluated.
-  [[nodiscard]] MatrixXd metric_at(const double* q) const {
+  [[nodiscard]] MatrixXd metric_at(const std::vector<double>& q) const {
     const int n = dynamics_.dof;
     const int rows = n + dynamics_.transcribed + 1;
     const std::vector<double> rest(n, 0.0);
     std::vector<double> values(rows);
     RowMajor derivative(rows, 2 * n);
-    if (!dynamics_.midpoint(q, rest.data(), values.data(), derivative.data())) {
+    if (!dynamics_.midpoint(q, rest, values, span_of(derivative))) {
       derivative.setConstant(std::numeric_limits<double>::quiet_NaN());
     }
     const MatrixXd terms = derivative.topRightCorner(rows - 1, n);
@@ -130,7 +131,7 @@ std::optional<Dilation> Dilation::at_start(const BoundaryValueProblem& problem) 
   Dilation dilation;
   dilation.from_ = problem.from;
   dilation.unit_ = start_scales(problem).radian;
-  Fields fields(problem.dynamics, problem.from.data(), kStep * dilation.unit_);
+  Fields fields(problem.dynamics, problem.from, kStep * dilation.unit_);
   const Eigen::Map<const VectorXd> from(problem.from.data(), n);
   std::vector<Direction> directions;
   for (int i = 0; i < n; ++i) {

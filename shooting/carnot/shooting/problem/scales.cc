@@ -12,7 +12,7 @@ StartScales start_scales(const BoundaryValueProblem& problem) {
   std::vector<double> step(n), middle(n), unit(n), terms(n + k + 1);
   const auto length_of = [&](const std::vector<double>& v) {
     double sum = 0;
-    if (!dynamics.midpoint(middle.data(), v.data(), terms.data(), nullptr)) return 0.0;
+    if (!dynamics.midpoint(middle, v, terms)) return 0.0;
     for (int j = 0; j < n; ++j) sum += terms[j] * terms[j];
     return std::sqrt(sum);
   };

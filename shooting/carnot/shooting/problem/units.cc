@@ -1,6 +1,7 @@
 #include "carnot/shooting/problem/units.h"
 
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "carnot/shooting/linear/dense.h"
@@ -16,12 +17,12 @@ using Eigen::VectorXd;
 // The length of the extremal where there is no potential: |q'| T.
 double length_of(const BoundaryValueProblem& problem, const double* p0) {
   const Dynamics& dynamics = problem.dynamics;
-  std::vector<double> velocity(dynamics.dof), lambda(dynamics.multipliers + 1);
+  std::vector<double> velocity(dynamics.dof), lambda(dynamics.multipliers);
   const std::vector<double> zero(dynamics.dof, 0.0);
-  const auto energy = [&](const double* p) {
-    return dynamics.evaluate(0, problem.from.data(), p, velocity.data(), lambda.data()).hamiltonian;
+  const auto energy = [&](std::span<const double> p) {
+    return dynamics.evaluate(0, problem.from, p, velocity, lambda).hamiltonian;
   };
-  return problem.time * std::sqrt(2 * (energy(p0) - energy(zero.data())));
+  return problem.time * std::sqrt(2 * (energy({p0, zero.size()}) - energy(zero)));
 }
 
 }  // namespace

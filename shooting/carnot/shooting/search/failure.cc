@@ -17,10 +17,9 @@ constexpr long kSteps = 256;  // of the flow from the momentum of a discrete ext
 
 std::string regularity(const BoundaryValueProblem& problem) {
   std::vector<double> velocity(problem.dynamics.dof);
-  std::vector<double> lambda(problem.dynamics.multipliers + 1);
+  std::vector<double> lambda(problem.dynamics.multipliers);
   const std::vector<double> zero(problem.dynamics.dof, 0.0);
-  const PointValues at =
-      problem.dynamics.evaluate(0, problem.to.data(), zero.data(), velocity.data(), lambda.data());
+  const PointValues at = problem.dynamics.evaluate(0, problem.to, zero, velocity, lambda);
   return at.status == RateStatus::kOk ? "" : "; at the target: " + std::string(describe(at.status));
 }
 

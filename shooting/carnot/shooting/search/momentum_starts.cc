@@ -19,8 +19,8 @@ std::vector<double> straight_momentum(const BoundaryValueProblem& problem) {
   }
   std::vector<double> admissible = velocity;
   std::vector<double> p(dynamics.dof);
-  const std::vector<double> lambda(dynamics.multipliers + 1, 0.0);
-  dynamics.momentum(0, problem.from.data(), admissible.data(), lambda.data(), p.data());
+  const std::vector<double> lambda(dynamics.multipliers, 0.0);
+  dynamics.momentum(0, problem.from, admissible, lambda, p);
   const bool finite = std::all_of(p.begin(), p.end(), [](double x) { return std::isfinite(x); });
   return finite ? p : velocity;
 }

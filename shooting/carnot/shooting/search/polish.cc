@@ -64,8 +64,8 @@ Outcome shoot_along(const BoundaryValueProblem& problem,
     velocity[j] = (path.configuration(1)[j] - path.configuration(0)[j]) / h;
   }
   std::vector<double> p0(n);
-  const std::vector<double> lambda(problem.dynamics.multipliers + 1, 0.0);
-  problem.dynamics.momentum(0, problem.from.data(), velocity.data(), lambda.data(), p0.data());
+  const std::vector<double> lambda(problem.dynamics.multipliers, 0.0);
+  problem.dynamics.momentum(0, problem.from, velocity, lambda, p0);
   const double distance = largest_difference(problem.from.data(), problem.to.data(), n);
   Eigen::MatrixXd tangent;
   if (!(correct(problem, kFewSteps, 0, p0, tangent) <= kPart * distance)) {

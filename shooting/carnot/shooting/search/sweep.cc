@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <random>
+#include <span>
 
 #include "carnot/numerics/parallel.h"
 #include "carnot/shooting/problem/dilation.h"
@@ -27,13 +28,11 @@ std::vector<double> draw_momentum(const BoundaryValueProblem& problem,
   const int n = problem.dynamics.dof;
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform(options.lowest, options.highest);
-  std::vector<double> p(n), zero(n, 0.0), velocity(n), lambda(problem.dynamics.multipliers + 1);
+  std::vector<double> p(n), zero(n, 0.0), velocity(n), lambda(problem.dynamics.multipliers);
   for (int j = 0; j < n; ++j) p[j] = options.momentum_scale[j] * normal(random);
   if (!bring_to_manifold(problem, p)) return {};
   const auto energy = [&](const std::vector<double>& at) {
-    return problem.dynamics
-        .evaluate(0, problem.from.data(), at.data(), velocity.data(), lambda.data())
-        .hamiltonian;
+    return problem.dynamics.evaluate(0, problem.from, at, velocity, lambda).hamiltonian;
   };
   const double kinetic = energy(p) - energy(zero);  // quadratic in p
   if (!(kinetic > 0)) return {};
@@ -94,9 +93,8 @@ void run(const BoundaryValueProblem& problem, int threads, std::vector<Draw>& dr
     z.insert(z.end(), draw.p.begin(), draw.p.end());
   }
   (void)(dynamics.has_adaptive_batch()
-             ? dynamics.adaptive_batch(0, problem.time, kTolerance, count, z.data(), threads)
-             : dynamics.flow_batch(
-                   StepPlan::equal(0, problem.time, kSteps), count, z.data(), threads));
+             ? dynamics.adaptive_batch(0, problem.time, kTolerance, count, z, threads)
+             : dynamics.flow_batch(StepPlan::equal(0, problem.time, kSteps), count, z, threads));
   const Miss target(problem);
   for (int i = 0; i < count; ++i) {
     const double miss = target.of(&z[static_cast<std::size_t>(i) * 2 * n]);
@@ -126,9 +124,11 @@ Path pulled(const BoundaryValueProblem& problem, const std::vector<double>& p, i
   }
   std::copy(problem.to.begin(), problem.to.end(), path.configuration(intervals));
   std::vector<double> middle(2 * n);
+  const std::span<const double> z(middle);
   for (int i = 0; i < intervals && k > 0; ++i) {
     for (int j = 0; j < 2 * n; ++j) middle[j] = 0.5 * (knots.at(i)[j] + knots.at(i + 1)[j]);
-    dynamics.midpoint_multipliers(middle.data(), middle.data() + n, path.lambda.data() + i * k);
+    dynamics.midpoint_multipliers(
+        z.first(n), z.subspan(n), std::span(path.lambda).subspan(i * k, k));
   }
   return path;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "carnot/numerics/linear_algebra.h"
 #include "carnot/shooting/linear/dense.h"
 
 namespace carnot::internal {
@@ -27,7 +28,7 @@ std::optional<Eigen::MatrixXd> end_point_tangent(const BoundaryValueProblem& pro
   z = problem.from;
   z.insert(z.end(), p0.begin(), p0.end());
   const StepPlan plan = StepPlan::equal(0, t, steps);
-  if (!problem.dynamics.tangent_flow(plan, z.data(), m.data()).completed()) return std::nullopt;
+  if (!problem.dynamics.tangent_flow(plan, z, span_of(m)).completed()) return std::nullopt;
   if (!m.allFinite()) return std::nullopt;
   return Eigen::MatrixXd(m.rightCols(n));
 }
@@ -114,7 +115,7 @@ void reduce(const BoundaryValueProblem& problem,
     std::vector<double> z = problem.from;
     z.insert(z.end(), momentum.begin(), momentum.end());
     const StepPlan plan = StepPlan::equal(0, kOnTheWay * problem.time, steps);
-    (void)problem.dynamics.flow(plan, z.data());
+    (void)problem.dynamics.flow(plan, z);
     return z;
   };
   const std::vector<double> before = on_the_way(p0);

@@ -24,8 +24,7 @@ Knots knots_of(const BoundaryValueProblem& problem,
   knots.z.insert(knots.z.end(), p0.begin(), p0.end());
   std::vector<double> z = knots.z;
   for (int i = 0; i < segments; ++i) {
-    const FlowReport report =
-        problem.dynamics.flow(knot_plan(problem, segments, i, steps), z.data());
+    const FlowReport report = problem.dynamics.flow(knot_plan(problem, segments, i, steps), z);
     if (!report.completed()) z.assign(knots.at(i), knots.at(i) + 2 * n);
     knots.z.insert(knots.z.end(), z.begin(), z.end());
   }

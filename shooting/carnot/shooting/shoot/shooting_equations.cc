@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "carnot/shooting/linear/round_off.h"
 
@@ -36,9 +37,8 @@ bool ShootingEquations::evaluate(
   const StepPlan plan = knot_plan(problem_, segments_, i, steps_);
   std::vector<double> end(z, z + size);
   std::vector<double> tangent(jacobian != nullptr ? size * size : 0);
-  const FlowReport report = jacobian != nullptr
-                                ? problem_.dynamics.tangent_flow(plan, end.data(), tangent.data())
-                                : problem_.dynamics.flow(plan, end.data());
+  const FlowReport report = jacobian != nullptr ? problem_.dynamics.tangent_flow(plan, end, tangent)
+                                                : problem_.dynamics.flow(plan, end);
   if (!report.completed()) return false;
   const double* wanted = last ? problem_.to.data() : next;
   for (int row = 0; row < residuals(i); ++row) {
@@ -55,8 +55,8 @@ bool ShootingEquations::evaluate(
 bool ShootingEquations::complete(Knots& knots) const {
   const int last = segments_ - 1;
   std::copy(knots.at(last), knots.at(last) + 2 * dof_, knots.at(segments_));
-  return problem_.dynamics.flow(knot_plan(problem_, segments_, last, steps_), knots.at(segments_))
-      .completed();
+  const std::span z(knots.at(segments_), 2 * dof_);
+  return problem_.dynamics.flow(knot_plan(problem_, segments_, last, steps_), z).completed();
 }
 
 }  // namespace carnot::internal

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "carnot/shooting/linear/round_off.h"
 
@@ -41,18 +42,18 @@ FlowSummary survey(const BoundaryValueProblem& problem,
                    long samples) {
   FlowSummary total;
   double initial = 0;
+  std::vector<double> velocity(knots.dof), lambda(problem.dynamics.multipliers);
   for (int i = 0; i < knots.segments; ++i) {
     std::vector<double> z(knots.at(i), knots.at(i) + 2 * knots.dof);
     MonitorOptions options;
     options.times = times_of_segment(problem, knots.segments, i, samples);
-    std::vector<double> unused(2 * knots.dof);
+    const std::span<const double> at(z);
     const double energy =
-        problem.dynamics
-            .evaluate(0, z.data(), z.data() + knots.dof, unused.data(), unused.data() + knots.dof)
+        problem.dynamics.evaluate(0, at.first(knots.dof), at.subspan(knots.dof), velocity, lambda)
             .hamiltonian;
     if (i == 0) initial = energy;
-    const FlowSummary part = problem.dynamics.monitored_flow(
-        knot_plan(problem, knots.segments, i, steps), z.data(), options);
+    const FlowSummary part =
+        problem.dynamics.monitored_flow(knot_plan(problem, knots.segments, i, steps), z, options);
     total.report = part.report;
     if (!part.completed()) return total;
     total.action += part.action;

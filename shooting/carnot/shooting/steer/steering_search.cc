@@ -66,13 +66,13 @@ void SteeringSearch::measure_rates() {
   if (!dynamics_.has_transcription()) return;
   std::mt19937_64 random;
   std::vector<double> q(n), p(n), velocity(n), terms(n + dynamics_.transcribed + 1);
-  std::vector<double> lambda(dynamics_.multipliers + 1);
+  std::vector<double> lambda(dynamics_.multipliers);
   for (int i = 0; i < kConfigurations; ++i) {
     for (int j = 0; j < n; ++j) {
       const double room = period_of(j) > 0 ? period_of(j) : kRoom;
       q[j] = std::uniform_real_distribution<double>(-room, room)(random);
     }
-    if (dynamics_.midpoint(q.data(), p.data(), terms.data(), nullptr) && terms.back() != 0) {
+    if (dynamics_.midpoint(q, p, terms) && terms.back() != 0) {
       rates_.assign(n, 0.0);
       return;
     }
@@ -80,7 +80,7 @@ void SteeringSearch::measure_rates() {
       if (!(period_of(j) > 0)) continue;
       p[j] = 1;
       std::fill(velocity.begin(), velocity.end(), 0.0);
-      (void)dynamics_.evaluate(0, q.data(), p.data(), velocity.data(), lambda.data());
+      (void)dynamics_.evaluate(0, q, p, velocity, lambda);
       if (velocity[j] > 0) rates_[j] = std::max(rates_[j], kMargin * std::sqrt(velocity[j]));
       p[j] = 0;
     }
@@ -186,7 +186,7 @@ bool SteeringSearch::follow(const SteeringAnswer& answer,
   if (since > 0) {
     const double start = static_cast<double>(sample) * unit;
     const StepPlan plan = StepPlan::equal(start, since * unit, answer.steps);
-    if (!dynamics_.flow(plan, z.data()).completed()) return false;
+    if (!dynamics_.flow(plan, z).completed()) return false;
   }
   contract(answer, sense, z.data());
   return true;
