@@ -1,7 +1,9 @@
 #include "carnot/dynamics.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <iterator>
 #include <span>
 #include <vector>
 
@@ -16,6 +18,8 @@ PointValues Dynamics::evaluate(double t,
                                std::span<const double> p,
                                std::span<double> q_dot,
                                std::span<double> lambda) const {
+  assert(std::ssize(q) == dof && std::ssize(p) == dof);
+  assert(std::ssize(q_dot) == dof && std::ssize(lambda) == multipliers);
   const void* const at = system.get();
   // z, its rate, and y.
   std::vector<double> memory(4 * dof + functions->algebraic);
@@ -40,6 +44,9 @@ bool Dynamics::midpoint(std::span<const double> qm,
                         std::span<const double> v,
                         std::span<double> terms,
                         std::span<double> jacobian) const {
+  assert(has_transcription() && std::ssize(qm) == dof && std::ssize(v) == dof);
+  assert(std::ssize(terms) == dof + transcribed + 1);
+  assert(jacobian.empty() || std::ssize(jacobian) == std::ssize(terms) * 2 * dof);
   return midpoint_terms(*transcription,
                         system.get(),
                         qm.data(),
@@ -52,6 +59,9 @@ void Dynamics::discrete_lagrangian(double h,
                                    std::span<const double> x,
                                    std::span<double> gradient,
                                    std::span<double> hessian) const {
+  assert(has_transcription() && std::ssize(x) == 2 * dof + transcribed);
+  assert(gradient.size() == x.size());
+  assert(hessian.empty() || hessian.size() == x.size() * x.size());
   carnot::discrete_lagrangian(*transcription,
                               system.get(),
                               h,
@@ -63,6 +73,8 @@ void Dynamics::discrete_lagrangian(double h,
 void Dynamics::midpoint_multipliers(std::span<const double> q,
                                     std::span<const double> p,
                                     std::span<double> lambda) const {
+  assert(has_transcription() && std::ssize(q) == dof && std::ssize(p) == dof);
+  assert(std::ssize(lambda) == transcribed);
   if (transcription->gauge) {
     gauged_multipliers(*transcription, system.get(), q.data(), p.data(), lambda.data());
     return;
@@ -77,6 +89,7 @@ BatchReport Dynamics::flow_batch(const StepPlan& plan,
                                  std::span<double> z,
                                  int threads) const {
   const int size = 2 * dof;
+  assert(std::ssize(z) == 2L * dof * count);
   return batch_of(count, threads, [&](int i, BatchReport& report) {
     const auto point = z.subspan(static_cast<std::size_t>(i) * size, size);
     const FlowReport run = flow(plan, point);

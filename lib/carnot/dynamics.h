@@ -2,10 +2,12 @@
 //
 // Relaxation, shooting, NLopt and the apps are compiled once against this struct; make_dynamics.h
 // makes one. All arrays are spans of the caller's memory: q, its velocity and p have n entries,
-// lambda has k, z = (q, p) has 2n. One indirect call per trajectory; inside it everything is
-// inlined.
+// lambda has k, z = (q, p) has 2n. Sizes are asserted, and so is that an optional call is there.
+// One indirect call per trajectory; inside it everything is inlined.
 #pragma once
 
+#include <cassert>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -53,12 +55,14 @@ struct Dynamics {
 
   // Advances z in place; on failure z is that of time_reached. No allocation.
   [[nodiscard]] FlowReport flow(const StepPlan& plan, std::span<double> z) const {
+    assert(std::ssize(z) == 2 * dof);
     return kernel.calls.flow(system.get(), kernel.method.get(), plan, z.data());
   }
   // The same, and m = dz(end)/dz(start), row-major 2n x 2n. No allocation.
   [[nodiscard]] FlowReport tangent_flow(const StepPlan& plan,
                                         std::span<double> z,
                                         std::span<double> m) const {
+    assert(std::ssize(z) == 2 * dof && std::ssize(m) == 4 * dof * dof);
     return kernel.calls.tangent_flow(system.get(), kernel.method.get(), plan, z.data(), m.data());
   }
   // Advances z with an error of about `tolerance`, constant steps chosen by a trial; see
@@ -67,6 +71,7 @@ struct Dynamics {
                                              double duration,
                                              double tolerance,
                                              std::span<double> z) const {
+    assert(has_automatic_flow() && std::ssize(z) == 2 * dof);
     return kernel.calls.automatic_flow(
         system.get(), kernel.method.get(), start, duration, tolerance, z.data());
   }
@@ -85,6 +90,7 @@ struct Dynamics {
                                            int count,
                                            std::span<double> z,
                                            int threads = 0) const {
+    assert(has_adaptive_batch() && std::ssize(z) == 2L * dof * count);
     return kernel.calls.adaptive_batch(
         system.get(), kernel.method.get(), start, duration, tolerance, count, z.data(), threads);
   }
@@ -93,6 +99,7 @@ struct Dynamics {
   [[nodiscard]] FlowSummary monitored_flow(const StepPlan& plan,
                                            std::span<double> z,
                                            const MonitorOptions& options) const {
+    assert(std::ssize(z) == 2 * dof);
     return kernel.calls.monitored_flow(system.get(), kernel.method.get(), plan, z.data(), options);
   }
   // H, q' and lambda at (t, q, p).
@@ -104,6 +111,7 @@ struct Dynamics {
   // Vanishes where the coordinates are singular; 1 for a scene where they nowhere are. A path from
   // one sign to the other passes such a point.
   [[nodiscard]] double chart(std::span<const double> q) const {
+    assert(std::ssize(q) == dof);
     return calls.chart != nullptr ? calls.chart(system.get(), q.data()) : 1.0;
   }
   // p of the velocity, which is projected on the admissible ones first. Returns the relative
@@ -113,6 +121,8 @@ struct Dynamics {
                   std::span<double> q_dot,
                   std::span<const double> lambda,
                   std::span<double> p) const {
+    assert(std::ssize(q) == dof && std::ssize(q_dot) == dof);
+    assert(std::ssize(lambda) == multipliers && std::ssize(p) == dof);
     return calls.momentum(system.get(), t, q.data(), q_dot.data(), lambda.data(), p.data());
   }
   // The same Dynamics on the branch of H_y = 0 through the multipliers nearest to `lambda` at
@@ -121,6 +131,7 @@ struct Dynamics {
                                                   std::span<const double> q,
                                                   std::span<const double> p,
                                                   std::span<const double> lambda) const {
+    assert(std::ssize(q) == dof && std::ssize(p) == dof && std::ssize(lambda) == multipliers);
     if (!has_branches()) return std::nullopt;
     Dynamics dynamics = *this;
     dynamics.system = calls.branch(system.get(), t, q.data(), p.data(), lambda.data());
@@ -132,16 +143,20 @@ struct Dynamics {
   // With holonomic constraints only, at z = (q, p): residuals; the nearest point of the manifold,
   // false where there is none; the orthogonal projector on its tangent space, 2n x 2n.
   [[nodiscard]] HolonomicResiduals holonomic_residuals(double t, std::span<const double> z) const {
+    assert(has_holonomic() && std::ssize(z) == 2 * dof);
     return calls.holonomic_residuals(system.get(), t, z.data());
   }
   [[nodiscard]] bool project_on_manifold(double t, std::span<double> z) const {
+    assert(has_holonomic() && std::ssize(z) == 2 * dof);
     return calls.project_on_manifold(system.get(), t, z.data());
   }
   [[nodiscard]] bool tangent_projector(double t,
                                        std::span<const double> z,
                                        std::span<double> projector) const {
+    assert(has_holonomic() && std::ssize(z) == 2 * dof && std::ssize(projector) == 4 * dof * dof);
     return calls.tangent_projector(system.get(), t, z.data(), projector.data());
   }
+  [[nodiscard]] bool has_holonomic() const { return calls.holonomic_residuals != nullptr; }
 
   // Whether there is a direct midpoint transcription; k stands for `transcribed` in what follows.
   [[nodiscard]] bool has_transcription() const { return transcription != nullptr; }
