@@ -19,7 +19,6 @@
 #include <cmath>
 
 #include "carnot/numerics/linear_algebra.h"
-#include "carnot/numerics/scalar.h"
 #include "carnot/scene/scene_info.h"
 
 namespace carnot::scenes {
@@ -34,14 +33,13 @@ struct Appell {
 
   template <class T>
   [[nodiscard]] T lagrangian(const T& /*t*/, const Vector<T, 3>& q, const Vector<T, 3>& v) const {
-    const T half = constant<T>(0.5);
-    const T spring = constant<T>(stiffness) * (q[0] * q[0] + q[1] * q[1]);
-    return half * (dot(v, v) - spring) - constant<T>(gravity) * q[2];
+    const T spring = stiffness * (q[0] * q[0] + q[1] * q[1]);
+    return 0.5 * (dot(v, v) - spring) - gravity * q[2];
   }
 
   template <class T>
   [[nodiscard]] Vector<T, 1> constraint(const Vector<T, 3>& /*q*/, const Vector<T, 3>& v) const {
-    return Vector<T, 1>(v[0] * v[0] + v[1] * v[1] - constant<T>(c * c) * v[2] * v[2]);
+    return Vector<T, 1>(v[0] * v[0] + v[1] * v[1] - c * c * v[2] * v[2]);
   }
 
   // The velocity without the constraint: at v = 0 no direction is better than another.

@@ -15,7 +15,6 @@
 #include <numbers>
 
 #include "carnot/numerics/linear_algebra.h"
-#include "carnot/numerics/scalar.h"
 #include "carnot/scene/body.h"
 #include "carnot/scene/scene_info.h"
 
@@ -30,13 +29,12 @@ struct Bicycle {
   template <class T>
   [[nodiscard]] Matrix<T, 4, 2> frame(const Vector<T, 4>& q) const {
     using std::cos, std::sin, std::tan;
-    const T zero = constant<T>(0);
     Matrix<T, 4, 2> f;
     // clang-format off
-    f << cos(q[2]),                       zero,
-         sin(q[2]),                       zero,
-         tan(q[3]) / constant<T>(length), zero,
-         zero,                            constant<T>(1);
+    f << cos(q[2]),          0,
+         sin(q[2]),          0,
+         tan(q[3]) / length, 0,
+         0,                  1;
     // clang-format on
     return f;
   }
@@ -47,12 +45,8 @@ struct Bicycle {
                                             const Vector<T, 4>& p,
                                             const Vector<T, 2>& u) const {
     using std::cos, std::sin;
-    const T zero = constant<T>(0);
     const T c = cos(q[3]);
-    return {zero,
-            zero,
-            u[0] * (p[1] * cos(q[2]) - p[0] * sin(q[2])),
-            u[0] * p[2] / (constant<T>(length) * c * c)};
+    return {0, 0, u[0] * (p[1] * cos(q[2]) - p[0] * sin(q[2])), u[0] * p[2] / (length * c * c)};
   }
 
   template <class T>

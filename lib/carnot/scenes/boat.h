@@ -20,7 +20,6 @@
 #include <cmath>
 
 #include "carnot/numerics/linear_algebra.h"
-#include "carnot/numerics/scalar.h"
 #include "carnot/scene/scene_info.h"
 
 namespace carnot::scenes {
@@ -36,7 +35,7 @@ struct Boat {
                                       const Vector<T, 2>& q,
                                       const Vector<T, 2>& u) const {
     using std::cos, std::sin;
-    return {u[0] * cos(u[1]) + constant<T>(shear) * q[1], u[0] * sin(u[1])};
+    return {u[0] * cos(u[1]) + shear * q[1], u[0] * sin(u[1])};
   }
 
   template <class T>
@@ -44,7 +43,7 @@ struct Boat {
                                const Vector<T, 2>& /*q*/,
                                const Vector<T, 2>& u) const {
     const T square = u[0] * u[0];
-    return constant<T>(0.5) * square + constant<T>(0.25) * square * square;
+    return 0.5 * square + 0.25 * square * square;
   }
 
   // Heading along p, thrust from above: u + u^3 - |p| is convex and not negative there, so that
@@ -55,7 +54,7 @@ struct Boat {
                                               const Vector<T, 2>& p) const {
     using std::atan2, std::cbrt, std::hypot;
     const T size = hypot(p[0], p[1]);
-    return {size < constant<T>(1) ? size : T(cbrt(size)), atan2(p[1], p[0])};
+    return {size < 1 ? size : T(cbrt(size)), atan2(p[1], p[0])};
   }
 
   static constexpr auto parameters() {

@@ -11,7 +11,6 @@
 #pragma once
 
 #include "carnot/numerics/linear_algebra.h"
-#include "carnot/numerics/scalar.h"
 #include "carnot/numerics/stumpff.h"
 #include "carnot/scene/scene_info.h"
 
@@ -23,12 +22,10 @@ struct Brockett {
 
   template <class T>
   [[nodiscard]] Matrix<T, 3, 2> frame(const Vector<T, 3>& q) const {
-    const T zero = constant<T>(0);
-    const T one = constant<T>(1);
     Matrix<T, 3, 2> f;
     // clang-format off
-    f << one,   zero,
-         zero,  one,
+    f << 1,     0,
+         0,     1,
          -q[1], q[0];
     // clang-format on
     return f;
@@ -39,7 +36,7 @@ struct Brockett {
   [[nodiscard]] Vector<T, 3> frame_gradient(const Vector<T, 3>& /*q*/,
                                             const Vector<T, 3>& p,
                                             const Vector<T, 2>& u) const {
-    return {p[2] * u[1], -p[2] * u[0], constant<T>(0)};
+    return {p[2] * u[1], -p[2] * u[0], 0};
   }
 
   // (q, p) at time t of the extremal with (q0, p0) at time 0; Stumpff functions keep the digits as

@@ -10,7 +10,6 @@
 #include <complex>
 
 #include "carnot/numerics/linear_algebra.h"
-#include "carnot/numerics/scalar.h"
 #include "carnot/scene/scene_info.h"
 
 namespace carnot::scenes {
@@ -24,18 +23,17 @@ struct DoubleIntegrator {
 
   template <class T>
   [[nodiscard]] Vector<T, 2> drift(const Vector<T, 2>& q) const {
-    return {q[1], constant<T>(0)};
+    return {q[1], 0};
   }
 
   template <class T>
   [[nodiscard]] Matrix<T, 2, 1> frame(const Vector<T, 2>& /*q*/) const {
-    return {constant<T>(0), constant<T>(1)};
+    return {0, 1};
   }
 
   template <class T>
   [[nodiscard]] T state_cost(const Vector<T, 2>& q) const {
-    return constant<T>(0.5) * (constant<T>(position_weight) * q[0] * q[0] +
-                               constant<T>(velocity_weight) * q[1] * q[1]);
+    return 0.5 * (position_weight * q[0] * q[0] + velocity_weight * q[1] * q[1]);
   }
 
   // d/dq [p.(f0 + F u) - l].
@@ -43,7 +41,7 @@ struct DoubleIntegrator {
   [[nodiscard]] Vector<T, 2> frame_gradient(const Vector<T, 2>& q,
                                             const Vector<T, 2>& p,
                                             const Vector<T, 1>& /*u*/) const {
-    return {-constant<T>(position_weight) * q[0], p[0] - constant<T>(velocity_weight) * q[1]};
+    return {-position_weight * q[0], p[0] - velocity_weight * q[1]};
   }
 
   // (q, p) at time t of the extremal with (q0, p0) at time 0.

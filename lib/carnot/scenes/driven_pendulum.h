@@ -16,7 +16,6 @@
 #include <numbers>
 
 #include "carnot/numerics/linear_algebra.h"
-#include "carnot/numerics/scalar.h"
 #include "carnot/scene/scene_info.h"
 
 namespace carnot::scenes {
@@ -34,11 +33,10 @@ struct DrivenPendulum {
   template <class T>
   [[nodiscard]] T lagrangian(const T& t, const Vector<T, 1>& q, const Vector<T, 1>& v) const {
     using std::cos, std::sin;
-    const T l = constant<T>(length);
-    const T pivot = constant<T>(-amplitude * frequency) * sin(constant<T>(frequency) * t);  // Y'
+    const T l = length;
+    const T pivot = -amplitude * frequency * sin(frequency * t);  // Y'
     const T along = l * v[0];
-    return constant<T>(0.5) * along * along + pivot * along * sin(q[0]) +
-           constant<T>(gravity) * l * cos(q[0]);
+    return 0.5 * along * along + pivot * along * sin(q[0]) + gravity * l * cos(q[0]);
   }
 
   static constexpr auto parameters() {

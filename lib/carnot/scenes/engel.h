@@ -19,7 +19,6 @@
 #pragma once
 
 #include "carnot/numerics/linear_algebra.h"
-#include "carnot/numerics/scalar.h"
 #include "carnot/scene/scene_info.h"
 
 namespace carnot::scenes {
@@ -30,35 +29,27 @@ struct Engel {
 
   template <class T>
   [[nodiscard]] Matrix<T, 4, 4> mass(const Vector<T, 4>& /*q*/) const {
-    Matrix<T, 4, 4> m = Matrix<T, 4, 4>::Constant(constant<T>(0));
-    m(0, 0) = m(1, 1) = constant<T>(1);
-    return m;
+    return diagonal<T>(1, 1, 0, 0);
   }
 
   template <class T>
   [[nodiscard]] Matrix<T, 2, 4> constraints(const Vector<T, 4>& q) const {
-    const T half = constant<T>(0.5);
-    const T zero = constant<T>(0);
-    const T one = constant<T>(1);
     Matrix<T, 2, 4> g;
     // clang-format off
-    g << half * q[1], -half * q[0],      one,  zero,
-         zero,        -half_square(q),   zero, one;
+    g << 0.5 * q[1], -0.5 * q[0],     1, 0,
+         0,          -half_square(q), 0, 1;
     // clang-format on
     return g;
   }
 
   template <class T>
   [[nodiscard]] Matrix<T, 4, 2> frame(const Vector<T, 4>& q) const {
-    const T half = constant<T>(0.5);
-    const T zero = constant<T>(0);
-    const T one = constant<T>(1);
     Matrix<T, 4, 2> b;
     // clang-format off
-    b << one,          zero,
-         zero,         one,
-         -half * q[1], half * q[0],
-         zero,         half_square(q);
+    b << 1,           0,
+         0,           1,
+         -0.5 * q[1], 0.5 * q[0],
+         0,           half_square(q);
     // clang-format on
     return b;
   }
@@ -66,7 +57,7 @@ struct Engel {
   // The diagonal of B'M B.
   template <class T>
   [[nodiscard]] Vector<T, 2> frame_masses(const Vector<T, 4>& /*q*/) const {
-    return {constant<T>(1), constant<T>(1)};
+    return {1, 1};
   }
 
   // d/dq [p.B u - u.u/2].
@@ -74,9 +65,8 @@ struct Engel {
   [[nodiscard]] Vector<T, 4> frame_gradient(const Vector<T, 4>& q,
                                             const Vector<T, 4>& p,
                                             const Vector<T, 2>& u) const {
-    const T half = constant<T>(0.5) * p[2];
-    const T zero = constant<T>(0);
-    return {u[1] * (half + q[0] * p[3]), u[1] * q[1] * p[3] - u[0] * half, zero, zero};
+    const T half = 0.5 * p[2];
+    return {u[1] * (half + q[0] * p[3]), u[1] * q[1] * p[3] - u[0] * half, 0, 0};
   }
 
   [[nodiscard]] SceneInfo info() const {
@@ -96,7 +86,7 @@ struct Engel {
   // (x1^2 + x2^2)/2.
   template <class T>
   static T half_square(const Vector<T, 4>& q) {
-    return constant<T>(0.5) * (q[0] * q[0] + q[1] * q[1]);
+    return 0.5 * (q[0] * q[0] + q[1] * q[1]);
   }
 };
 

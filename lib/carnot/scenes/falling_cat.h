@@ -32,33 +32,26 @@ struct FallingCat {
 
   template <class T>
   [[nodiscard]] Matrix<T, 3, 3> mass(const Vector<T, 3>& /*q*/) const {
-    Matrix<T, 3, 3> m = Matrix<T, 3, 3>::Constant(constant<T>(0));
-    m(0, 0) = m(1, 1) = m(2, 2) = constant<T>(1);
-    return m;
+    return diagonal<T>(1, 1, 1);
   }
 
   template <class T>
   [[nodiscard]] Matrix<T, 1, 3> constraints(const Vector<T, 3>& q) const {
     using std::cos;
-    const T third = constant<T>(Real<T>(1) / Real<T>(3));
-    const T two = constant<T>(2);
-    const T one = constant<T>(1);
+    const T third = T(Real<T>(1) / 3);
     const T c = third * cos(q[1] - q[2]);
-    return {constant<T>(Real<T>(13) / Real<T>(3)) + two * (cos(q[1]) + cos(q[2]) + c),
-            one + cos(q[1]) + c,
-            one + cos(q[2]) + c};
+    return {
+        T(Real<T>(13) / 3) + 2 * (cos(q[1]) + cos(q[2]) + c), 1 + cos(q[1]) + c, 1 + cos(q[2]) + c};
   }
 
   template <class T>
   [[nodiscard]] Matrix<T, 3, 2> frame(const Vector<T, 3>& q) const {
     const Matrix<T, 1, 3> g = constraints(q);
-    const T zero = constant<T>(0);
-    const T one = constant<T>(1);
     Matrix<T, 3, 2> b;
     // clang-format off
     b << -g(0, 1) / g(0, 0), -g(0, 2) / g(0, 0),
-         one,                zero,
-         zero,               one;
+         1,                  0,
+         0,                  1;
     // clang-format on
     return b;
   }
@@ -70,15 +63,14 @@ struct FallingCat {
                                             const Vector<T, 2>& u) const {
     using std::sin;
     const Matrix<T, 1, 3> g = constraints(q);
-    const T two = constant<T>(2);
     const T theta_dot = -(g(0, 1) * u[0] + g(0, 2) * u[1]) / g(0, 0);
-    const T s = constant<T>(Real<T>(1) / Real<T>(3)) * sin(q[1] - q[2]);
+    const T s = T(Real<T>(1) / 3) * sin(q[1] - q[2]);
     // -d/da (I theta' + A a' + B b') at frozen velocity, and the same for b.
-    const T by_a = sin(q[1]) * (two * theta_dot + u[0]);
-    const T by_b = sin(q[2]) * (two * theta_dot + u[1]);
-    const T by_both = s * (two * theta_dot + u[0] + u[1]);
+    const T by_a = sin(q[1]) * (2 * theta_dot + u[0]);
+    const T by_b = sin(q[2]) * (2 * theta_dot + u[1]);
+    const T by_both = s * (2 * theta_dot + u[0] + u[1]);
     const T slope = (p[0] - theta_dot) / g(0, 0);
-    return {constant<T>(0), slope * (by_a + by_both), slope * (by_b - by_both)};
+    return {0, slope * (by_a + by_both), slope * (by_b - by_both)};
   }
 
   [[nodiscard]] SceneInfo info() const {

@@ -12,7 +12,6 @@
 #include <cmath>
 
 #include "carnot/numerics/linear_algebra.h"
-#include "carnot/numerics/scalar.h"
 #include "carnot/numerics/stumpff.h"
 #include "carnot/scene/scene_info.h"
 
@@ -24,11 +23,10 @@ struct Grushin {
 
   template <class T>
   [[nodiscard]] Matrix<T, 2, 2> frame(const Vector<T, 2>& q) const {
-    const T zero = constant<T>(0);
     Matrix<T, 2, 2> f;
     // clang-format off
-    f << constant<T>(1), zero,
-         zero,           q[0];
+    f << 1, 0,
+         0, q[0];
     // clang-format on
     return f;
   }
@@ -38,7 +36,7 @@ struct Grushin {
   [[nodiscard]] Vector<T, 2> frame_gradient(const Vector<T, 2>& /*q*/,
                                             const Vector<T, 2>& p,
                                             const Vector<T, 2>& u) const {
-    return {p[1] * u[1], constant<T>(0)};
+    return {p[1] * u[1], 0};
   }
 
   // (q, p) at time t of the extremal with (q0, p0) at time 0; Stumpff functions keep the digits as

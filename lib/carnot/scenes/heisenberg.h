@@ -6,7 +6,6 @@
 #pragma once
 
 #include "carnot/numerics/linear_algebra.h"
-#include "carnot/numerics/scalar.h"
 #include "carnot/scene/scene_info.h"
 
 namespace carnot::scenes {
@@ -17,24 +16,20 @@ struct Heisenberg {
 
   template <class T>
   [[nodiscard]] Matrix<T, 3, 3> mass(const Vector<T, 3>& /*q*/) const {
-    Matrix<T, 3, 3> m = Matrix<T, 3, 3>::Constant(constant<T>(0));
-    m(0, 0) = m(1, 1) = m(2, 2) = constant<T>(1);
-    return m;
+    return diagonal<T>(1, 1, 1);
   }
 
   template <class T>
   [[nodiscard]] Matrix<T, 1, 3> constraints(const Vector<T, 3>& q) const {
-    return {-q[1], q[0], constant<T>(1)};
+    return {-q[1], q[0], 1};
   }
 
   template <class T>
   [[nodiscard]] Matrix<T, 3, 2> frame(const Vector<T, 3>& q) const {
-    const T zero = constant<T>(0);
-    const T one = constant<T>(1);
     Matrix<T, 3, 2> b;
     // clang-format off
-    b << one,  zero,
-         zero, one,
+    b << 1,    0,
+         0,    1,
          q[1], -q[0];
     // clang-format on
     return b;
@@ -46,7 +41,7 @@ struct Heisenberg {
                                             const Vector<T, 3>& p,
                                             const Vector<T, 2>& u) const {
     const T slope = p[2] - (u[0] * q[1] - u[1] * q[0]);
-    return {-slope * u[1], slope * u[0], constant<T>(0)};
+    return {-slope * u[1], slope * u[0], 0};
   }
 
   [[nodiscard]] SceneInfo info() const {

@@ -10,7 +10,6 @@
 #pragma once
 
 #include "carnot/numerics/linear_algebra.h"
-#include "carnot/numerics/scalar.h"
 #include "carnot/numerics/stumpff.h"
 #include "carnot/scene/scene_info.h"
 
@@ -22,27 +21,21 @@ struct HeisenbergGroup {
 
   template <class T>
   [[nodiscard]] Matrix<T, 3, 3> mass(const Vector<T, 3>& /*q*/) const {
-    Matrix<T, 3, 3> m = Matrix<T, 3, 3>::Constant(constant<T>(0));
-    m(0, 0) = m(1, 1) = constant<T>(1);
-    return m;
+    return diagonal<T>(1, 1, 0);
   }
 
   template <class T>
   [[nodiscard]] Matrix<T, 1, 3> constraints(const Vector<T, 3>& q) const {
-    const T half = constant<T>(0.5);
-    return {half * q[1], -half * q[0], constant<T>(1)};
+    return {0.5 * q[1], -0.5 * q[0], 1};
   }
 
   template <class T>
   [[nodiscard]] Matrix<T, 3, 2> frame(const Vector<T, 3>& q) const {
-    const T half = constant<T>(0.5);
-    const T zero = constant<T>(0);
-    const T one = constant<T>(1);
     Matrix<T, 3, 2> b;
     // clang-format off
-    b << one,          zero,
-         zero,         one,
-         -half * q[1], half * q[0];
+    b << 1,           0,
+         0,           1,
+         -0.5 * q[1], 0.5 * q[0];
     // clang-format on
     return b;
   }
@@ -50,7 +43,7 @@ struct HeisenbergGroup {
   // The diagonal of B'M B.
   template <class T>
   [[nodiscard]] Vector<T, 2> frame_masses(const Vector<T, 3>& /*q*/) const {
-    return {constant<T>(1), constant<T>(1)};
+    return {1, 1};
   }
 
   // d/dq [p.B u - u.u/2].
@@ -58,8 +51,8 @@ struct HeisenbergGroup {
   [[nodiscard]] Vector<T, 3> frame_gradient(const Vector<T, 3>& /*q*/,
                                             const Vector<T, 3>& p,
                                             const Vector<T, 2>& u) const {
-    const T half = constant<T>(0.5) * p[2];
-    return {half * u[1], -half * u[0], constant<T>(0)};
+    const T half = 0.5 * p[2];
+    return {half * u[1], -half * u[0], 0};
   }
 
   // The extremal from the origin with momentum p at time t, in closed form; Stumpff functions keep

@@ -26,7 +26,6 @@
 #include <cmath>
 
 #include "carnot/numerics/linear_algebra.h"
-#include "carnot/numerics/scalar.h"
 #include "carnot/numerics/stumpff.h"
 #include "carnot/scene/scene_info.h"
 
@@ -43,11 +42,10 @@ struct MagneticParticle {
 
   template <class T>
   [[nodiscard]] T hamiltonian(const Vector<T, 6>& z) const {
-    const T half = constant<T>(0.5);
     const T speed2 = z[4] * z[4] + z[5] * z[5];
-    const T fast = constant<T>(1) + speed2 / constant<T>(4 * light_speed * light_speed);
-    const T kinetic = half * constant<T>(mass) * speed2 * fast;
-    const T trap = half * constant<T>(stiffness) * (z[0] * z[0] + z[1] * z[1]);
+    const T fast = 1 + speed2 / (4 * light_speed * light_speed);
+    const T kinetic = 0.5 * mass * speed2 * fast;
+    const T trap = 0.5 * stiffness * (z[0] * z[0] + z[1] * z[1]);
     return z[2] * z[4] + z[3] * z[5] - kinetic + trap;
   }
 

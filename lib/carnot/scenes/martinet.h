@@ -18,7 +18,6 @@
 #pragma once
 
 #include "carnot/numerics/linear_algebra.h"
-#include "carnot/numerics/scalar.h"
 #include "carnot/scene/scene_info.h"
 
 namespace carnot::scenes {
@@ -29,25 +28,21 @@ struct Martinet {
 
   template <class T>
   [[nodiscard]] Matrix<T, 3, 3> mass(const Vector<T, 3>& /*q*/) const {
-    Matrix<T, 3, 3> m = Matrix<T, 3, 3>::Constant(constant<T>(0));
-    m(0, 0) = m(1, 1) = constant<T>(1);
-    return m;
+    return diagonal<T>(1, 1, 0);
   }
 
   template <class T>
   [[nodiscard]] Matrix<T, 1, 3> constraints(const Vector<T, 3>& q) const {
-    return {constant<T>(0.5) * q[1] * q[1], constant<T>(0), constant<T>(-1)};
+    return {0.5 * q[1] * q[1], 0, -1};
   }
 
   template <class T>
   [[nodiscard]] Matrix<T, 3, 2> frame(const Vector<T, 3>& q) const {
-    const T zero = constant<T>(0);
-    const T one = constant<T>(1);
     Matrix<T, 3, 2> b;
     // clang-format off
-    b << one,                              zero,
-         zero,                             one,
-         constant<T>(0.5) * q[1] * q[1],   zero;
+    b << 1,                 0,
+         0,                 1,
+         0.5 * q[1] * q[1], 0;
     // clang-format on
     return b;
   }
@@ -55,7 +50,7 @@ struct Martinet {
   // The diagonal of B'M B.
   template <class T>
   [[nodiscard]] Vector<T, 2> frame_masses(const Vector<T, 3>& /*q*/) const {
-    return {constant<T>(1), constant<T>(1)};
+    return {1, 1};
   }
 
   // d/dq [p.B u - u.u/2].
@@ -63,7 +58,7 @@ struct Martinet {
   [[nodiscard]] Vector<T, 3> frame_gradient(const Vector<T, 3>& q,
                                             const Vector<T, 3>& p,
                                             const Vector<T, 2>& u) const {
-    return {constant<T>(0), p[2] * u[0] * q[1], constant<T>(0)};
+    return {0, p[2] * u[0] * q[1], 0};
   }
 
   [[nodiscard]] SceneInfo info() const {

@@ -11,7 +11,6 @@
 #include <numbers>
 
 #include "carnot/numerics/linear_algebra.h"
-#include "carnot/numerics/scalar.h"
 #include "carnot/scene/scene_info.h"
 
 namespace carnot::scenes {
@@ -28,7 +27,7 @@ struct Pendulum {
 
   template <class T>
   [[nodiscard]] Matrix<T, 2, 1> frame(const Vector<T, 2>& /*q*/) const {
-    return {constant<T>(0), constant<T>(1)};
+    return {0, 1};
   }
 
   // d/dq [p.(f0 + F u) - u^2/2].

@@ -24,7 +24,6 @@
 #include <numbers>
 
 #include "carnot/numerics/linear_algebra.h"
-#include "carnot/numerics/scalar.h"
 #include "carnot/scene/body.h"
 #include "carnot/scene/scene_info.h"
 
@@ -36,22 +35,18 @@ struct PlateBall {
 
   template <class T>
   [[nodiscard]] Matrix<T, 5, 5> mass(const Vector<T, 5>& /*q*/) const {
-    Matrix<T, 5, 5> m = Matrix<T, 5, 5>::Constant(constant<T>(0));
-    m(0, 0) = m(1, 1) = constant<T>(1);
-    return m;
+    return diagonal<T>(1, 1, 0, 0, 0);
   }
 
   template <class T>
   [[nodiscard]] Matrix<T, 3, 5> constraints(const Vector<T, 5>& q) const {
     using std::cos, std::sin;
-    const T zero = constant<T>(0);
-    const T one = constant<T>(1);
     const T c = cos(q[3]);
     Matrix<T, 3, 5> g;
     // clang-format off
-    g << zero, one,  zero, -sin(q[2]), cos(q[2]) * c,
-         -one, zero, zero, cos(q[2]),  sin(q[2]) * c,
-         zero, zero, one,  zero,       -sin(q[3]);
+    g << 0,  1, 0, -sin(q[2]), cos(q[2]) * c,
+         -1, 0, 0, cos(q[2]),  sin(q[2]) * c,
+         0,  0, 1, 0,          -sin(q[3]);
     // clang-format on
     return g;
   }
@@ -59,14 +54,12 @@ struct PlateBall {
   template <class T>
   [[nodiscard]] Matrix<T, 5, 2> frame(const Vector<T, 5>& q) const {
     using std::cos, std::sin;
-    const T zero = constant<T>(0);
-    const T one = constant<T>(1);
     const T phi_dot1 = sin(q[2]) / cos(q[3]);
     const T phi_dot2 = -cos(q[2]) / cos(q[3]);
     Matrix<T, 5, 2> b;
     // clang-format off
-    b << one,                  zero,
-         zero,                 one,
+    b << 1,                    0,
+         0,                    1,
          phi_dot1 * sin(q[3]), phi_dot2 * sin(q[3]),
          cos(q[2]),            sin(q[2]),
          phi_dot1,             phi_dot2;
@@ -77,7 +70,7 @@ struct PlateBall {
   // The diagonal of B'M B.
   template <class T>
   [[nodiscard]] Vector<T, 2> frame_masses(const Vector<T, 5>& /*q*/) const {
-    return {constant<T>(1), constant<T>(1)};
+    return {1, 1};
   }
 
   // d/dq [p.B u - u'B'M B u/2].
@@ -86,13 +79,12 @@ struct PlateBall {
                                             const Vector<T, 5>& p,
                                             const Vector<T, 2>& u) const {
     using std::cos, std::sin;
-    const T zero = constant<T>(0);
     const T c = cos(q[3]);
     const T s = sin(q[3]);
     const T across = u[0] * sin(q[2]) - u[1] * cos(q[2]);
     const T along = u[0] * cos(q[2]) + u[1] * sin(q[2]);
     Vector<T, 5> gradient;
-    gradient[0] = gradient[1] = gradient[4] = zero;
+    gradient[0] = gradient[1] = gradient[4] = 0;
     gradient[2] = along * (p[2] * s + p[4]) / c - across * p[3];
     gradient[3] = across * (p[2] + p[4] * s) / (c * c);
     return gradient;

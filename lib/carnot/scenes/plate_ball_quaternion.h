@@ -17,7 +17,6 @@
 
 #include "carnot/numerics/linear_algebra.h"
 #include "carnot/numerics/quaternion.h"
-#include "carnot/numerics/scalar.h"
 #include "carnot/scene/body.h"
 #include "carnot/scene/scene_info.h"
 
@@ -31,11 +30,11 @@ struct PlateBallQuaternion {
 
   template <class T>
   [[nodiscard]] Matrix<T, 6, 6> mass(const Vector<T, 6>& q) const {
-    Matrix<T, 6, 6> m = Matrix<T, 6, 6>::Constant(constant<T>(0));
-    m(0, 0) = m(1, 1) = constant<T>(1);
+    Matrix<T, 6, 6> m = Matrix<T, 6, 6>::Zero();
+    m(0, 0) = m(1, 1) = 1;
     const Vector<T, 4> attitude = q.template tail<4>();
     const T square = dot(attitude, attitude);
-    const T scale = constant<T>(4) / (square * square);
+    const T scale = T(4) / (square * square);
     for (int i = 2; i < 6; ++i) {
       for (int j = 2; j < 6; ++j) m(i, j) = scale * q[i] * q[j];
     }
@@ -47,7 +46,7 @@ struct PlateBallQuaternion {
     const Vector<T, 4> attitude = q.template tail<4>();
     const Matrix<T, 4, 4> rates = space_rates(attitude);
     const T square = dot(attitude, attitude);
-    Matrix<T, 3, 6> g = Matrix<T, 3, 6>::Constant(constant<T>(0));
+    Matrix<T, 3, 6> g = Matrix<T, 3, 6>::Zero();
     g(0, 1) = square;
     g(1, 0) = -square;
     for (int i = 0; i < 3; ++i) {
@@ -59,19 +58,18 @@ struct PlateBallQuaternion {
   template <class T>
   [[nodiscard]] Vector<T, 1> holonomic(const Vector<T, 6>& q) const {
     const Vector<T, 4> attitude = q.template tail<4>();
-    return Vector<T, 1>(dot(attitude, attitude) - constant<T>(1));
+    return Vector<T, 1>(dot(attitude, attitude) - 1);
   }
 
   template <class T>
   [[nodiscard]] Matrix<T, 6, 3> frame(const Vector<T, 6>& q) const {
     const Matrix<T, 4, 4> rates = space_rates(Vector<T, 4>(q.template tail<4>()));
-    const T quarter = constant<T>(0.25);
-    Matrix<T, 6, 3> b = Matrix<T, 6, 3>::Constant(constant<T>(0));
-    b(0, 0) = b(1, 1) = constant<T>(1);
+    Matrix<T, 6, 3> b = Matrix<T, 6, 3>::Zero();
+    b(0, 0) = b(1, 1) = 1;
     for (int j = 0; j < 4; ++j) {
-      b(2 + j, 0) = quarter * rates(2, j);
-      b(2 + j, 1) = -quarter * rates(1, j);
-      b(2 + j, 2) = quarter * rates(0, j);
+      b(2 + j, 0) = 0.25 * rates(2, j);
+      b(2 + j, 1) = -0.25 * rates(1, j);
+      b(2 + j, 2) = 0.25 * rates(0, j);
     }
     return b;
   }
@@ -79,7 +77,7 @@ struct PlateBallQuaternion {
   // The diagonal of B'M B.
   template <class T>
   [[nodiscard]] Vector<T, 3> frame_masses(const Vector<T, 6>& /*q*/) const {
-    return Vector<T, 3>::Constant(constant<T>(1));
+    return Vector<T, 3>::Constant(1);
   }
 
   // d/dq [p.B u - u'B'M B u/2]: the attitude has B u = c q with the quaternion
@@ -88,11 +86,10 @@ struct PlateBallQuaternion {
   [[nodiscard]] Vector<T, 6> frame_gradient(const Vector<T, 6>& /*q*/,
                                             const Vector<T, 6>& p,
                                             const Vector<T, 3>& u) const {
-    const T half = constant<T>(0.5);
-    const Vector<T, 4> conj_c(half * u[2], half * u[1], -half * u[0], constant<T>(0));
+    const Vector<T, 4> conj_c(0.5 * u[2], 0.5 * u[1], -0.5 * u[0], 0);
     const Vector<T, 4> by_attitude = quaternion_product(conj_c, Vector<T, 4>(p.template tail<4>()));
     Vector<T, 6> gradient;
-    gradient << constant<T>(0), constant<T>(0), by_attitude;
+    gradient << 0, 0, by_attitude;
     return gradient;
   }
 

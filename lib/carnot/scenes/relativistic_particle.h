@@ -17,7 +17,6 @@
 #include <cmath>
 
 #include "carnot/numerics/linear_algebra.h"
-#include "carnot/numerics/scalar.h"
 #include "carnot/numerics/stumpff.h"
 #include "carnot/scene/scene_info.h"
 
@@ -36,10 +35,9 @@ struct RelativisticParticle {
   template <class T>
   [[nodiscard]] T lagrangian(const T& /*t*/, const Vector<T, 3>& q, const Vector<T, 3>& v) const {
     using std::sqrt;
-    const T beta2 = dot(v, v) / constant<T>(light * light);
-    const T swept = constant<T>(0.5) * (q[0] * v[1] - q[1] * v[0]);
-    return constant<T>(charge * field) * swept -
-           constant<T>(mass * light * light) * sqrt(constant<T>(1) - beta2);
+    const T beta2 = dot(v, v) / (light * light);
+    const T swept = 0.5 * (q[0] * v[1] - q[1] * v[0]);
+    return charge * field * swept - mass * light * light * sqrt(1 - beta2);
   }
 
   // (q, p) at time t; Stumpff functions keep the digits as the field vanishes.

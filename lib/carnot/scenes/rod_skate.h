@@ -13,7 +13,6 @@
 #include <cmath>
 
 #include "carnot/numerics/linear_algebra.h"
-#include "carnot/numerics/scalar.h"
 #include "carnot/scene/scene_info.h"
 
 namespace carnot::scenes {
@@ -25,9 +24,7 @@ struct RodSkate {
 
   template <class T>
   [[nodiscard]] Matrix<T, 4, 4> mass(const Vector<T, 4>& /*q*/) const {
-    Matrix<T, 4, 4> m = Matrix<T, 4, 4>::Constant(constant<T>(0));
-    m(0, 0) = m(1, 1) = m(2, 2) = m(3, 3) = constant<T>(1);
-    return m;
+    return diagonal<T>(1, 1, 1, 1);
   }
 
   template <class T>
@@ -41,7 +38,7 @@ struct RodSkate {
   [[nodiscard]] Vector<T, 1> holonomic(const Vector<T, 4>& q) const {
     const T dx = q[2] - q[0];
     const T dy = q[3] - q[1];
-    return Vector<T, 1>(dx * dx + dy * dy - constant<T>(1));
+    return Vector<T, 1>(dx * dx + dy * dy - 1);
   }
 
   template <class T>
@@ -68,7 +65,7 @@ struct RodSkate {
   [[nodiscard]] Vector<T, 3> frame_masses(const Vector<T, 4>& q) const {
     const T dx = q[2] - q[0];
     const T dy = q[3] - q[1];
-    return Vector<T, 3>::Constant(constant<T>(2) * (dx * dx + dy * dy));
+    return Vector<T, 3>::Constant(2 * (dx * dx + dy * dy));
   }
 
   // d/dq [p.B u - u'B'M B u/2 + V]: but for V, d alone enters.
@@ -76,14 +73,14 @@ struct RodSkate {
   [[nodiscard]] Vector<T, 4> frame_gradient(const Vector<T, 4>& q,
                                             const Vector<T, 4>& p,
                                             const Vector<T, 3>& u) const {
-    const T square = constant<T>(2) * dot(u, u);
+    const T square = 2 * dot(u, u);
     const T opposite_x = p[2] - p[0];
     const T opposite_y = p[3] - p[1];
     const T x = u[0] * (p[0] + p[2]) + u[1] * opposite_x + u[2] * opposite_y;
     const T y = u[0] * (p[1] + p[3]) + u[1] * opposite_y - u[2] * opposite_x;
     const T by_dx = x - square * (q[2] - q[0]);
     const T by_dy = y - square * (q[3] - q[1]);
-    return {-by_dx, constant<T>(1) - by_dy, by_dx, constant<T>(1) + by_dy};
+    return {-by_dx, 1 - by_dy, by_dx, 1 + by_dy};
   }
 
   [[nodiscard]] SceneInfo info() const {

@@ -25,7 +25,6 @@
 #include <numbers>
 
 #include "carnot/numerics/linear_algebra.h"
-#include "carnot/numerics/scalar.h"
 #include "carnot/scene/body.h"
 #include "carnot/scene/scene_info.h"
 
@@ -43,8 +42,8 @@ struct Satellite {
     const Matrix<T, 3, 3> rates = body_rates(q);
     Matrix<T, 3, 3> weighted = rates;
     for (int j = 0; j < 3; ++j) {
-      weighted(0, j) = constant<T>(j1) * rates(0, j);
-      weighted(1, j) = constant<T>(j2) * rates(1, j);
+      weighted(0, j) = j1 * rates(0, j);
+      weighted(1, j) = j2 * rates(1, j);
     }
     return product(rates.transpose(), weighted);
   }
@@ -58,12 +57,11 @@ struct Satellite {
   template <class T>
   [[nodiscard]] Matrix<T, 3, 3> body_rates(const Vector<T, 3>& q) const {
     using std::cos, std::sin;
-    const T zero = constant<T>(0);
     Matrix<T, 3, 3> w;
     // clang-format off
-    w << -sin(q[1]),            zero,       constant<T>(1),
-         sin(q[2]) * cos(q[1]), cos(q[2]),  zero,
-         cos(q[2]) * cos(q[1]), -sin(q[2]), zero;
+    w << -sin(q[1]),            0,          1,
+         sin(q[2]) * cos(q[1]), cos(q[2]),  0,
+         cos(q[2]) * cos(q[1]), -sin(q[2]), 0;
     // clang-format on
     return w;
   }
@@ -71,13 +69,12 @@ struct Satellite {
   template <class T>
   [[nodiscard]] Matrix<T, 3, 2> frame(const Vector<T, 3>& q) const {
     using std::cos, std::sin;
-    const T zero = constant<T>(0);
     const T psi_dot = sin(q[2]) / cos(q[1]);
     Matrix<T, 3, 2> b;
     // clang-format off
-    b << zero,           psi_dot,
-         zero,           cos(q[2]),
-         constant<T>(1), psi_dot * sin(q[1]);
+    b << 0, psi_dot,
+         0, cos(q[2]),
+         1, psi_dot * sin(q[1]);
     // clang-format on
     return b;
   }
@@ -85,7 +82,7 @@ struct Satellite {
   // The diagonal of B'M B.
   template <class T>
   [[nodiscard]] Vector<T, 2> frame_masses(const Vector<T, 3>& /*q*/) const {
-    return {constant<T>(j1), constant<T>(j2)};
+    return {j1, j2};
   }
 
   // d/dq [p.B u - u'B'M B u/2].
@@ -99,7 +96,7 @@ struct Satellite {
     const T along = (p[0] + p[2] * s) / c;
     const T by_theta = u[1] * sin(q[2]) * (p[2] + p[0] * s) / (c * c);
     const T by_phi = u[1] * (cos(q[2]) * along - sin(q[2]) * p[1]);
-    return {constant<T>(0), by_theta, by_phi};
+    return {0, by_theta, by_phi};
   }
 
   // cos theta.

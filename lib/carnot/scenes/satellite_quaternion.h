@@ -18,7 +18,6 @@
 
 #include "carnot/numerics/linear_algebra.h"
 #include "carnot/numerics/quaternion.h"
-#include "carnot/numerics/scalar.h"
 #include "carnot/scene/body.h"
 #include "carnot/scene/scene_info.h"
 
@@ -36,9 +35,9 @@ struct SatelliteQuaternion {
   template <class T>
   [[nodiscard]] Matrix<T, 4, 4> mass(const Vector<T, 4>& q) const {
     const Matrix<T, 4, 4> rates = body_rates(q);
-    const Vector<T, 4> inertia(constant<T>(1), constant<T>(j1), constant<T>(j2), constant<T>(1));
+    const Vector<T, 4> inertia(1, j1, j2, 1);
     const T square = dot(q, q);
-    const T scale = constant<T>(1) / (square * square);
+    const T scale = T(1) / (square * square);
     Matrix<T, 4, 4> weighted = rates;
     for (int i = 0; i < 4; ++i) {
       for (int j = 0; j < 4; ++j) weighted(i, j) = scale * inertia[i] * rates(i, j);
@@ -53,18 +52,17 @@ struct SatelliteQuaternion {
 
   template <class T>
   [[nodiscard]] Vector<T, 1> holonomic(const Vector<T, 4>& q) const {
-    return Vector<T, 1>(dot(q, q) - constant<T>(1));
+    return Vector<T, 1>(dot(q, q) - 1);
   }
 
   template <class T>
   [[nodiscard]] Matrix<T, 4, 3> frame(const Vector<T, 4>& q) const {
     const Matrix<T, 4, 4> rates = body_rates(q);
-    const T quarter = constant<T>(0.25);
     Matrix<T, 4, 3> b;
     for (int i = 0; i < 4; ++i) {
-      b(i, 0) = quarter * rates(1, i);
-      b(i, 1) = quarter * rates(2, i);
-      b(i, 2) = quarter * rates(0, i);
+      b(i, 0) = 0.25 * rates(1, i);
+      b(i, 1) = 0.25 * rates(2, i);
+      b(i, 2) = 0.25 * rates(0, i);
     }
     return b;
   }
@@ -72,7 +70,7 @@ struct SatelliteQuaternion {
   // The diagonal of B'M B.
   template <class T>
   [[nodiscard]] Vector<T, 3> frame_masses(const Vector<T, 4>& /*q*/) const {
-    return {constant<T>(j1), constant<T>(j2), constant<T>(1)};
+    return {j1, j2, 1};
   }
 
   // d/dq [p.B u - u'B'M B u/2]: B u = q c with the quaternion c = (u3, u1, u2, 0)/2.
@@ -80,8 +78,7 @@ struct SatelliteQuaternion {
   [[nodiscard]] Vector<T, 4> frame_gradient(const Vector<T, 4>& /*q*/,
                                             const Vector<T, 4>& p,
                                             const Vector<T, 3>& u) const {
-    const T half = constant<T>(0.5);
-    const Vector<T, 4> conj_c(half * u[2], -half * u[0], -half * u[1], constant<T>(0));
+    const Vector<T, 4> conj_c(0.5 * u[2], -0.5 * u[0], -0.5 * u[1], 0);
     return quaternion_product(p, conj_c);
   }
 

@@ -17,7 +17,6 @@
 #include <array>
 
 #include "carnot/numerics/linear_algebra.h"
-#include "carnot/numerics/scalar.h"
 #include "carnot/scene/body.h"
 #include "carnot/scene/scene_info.h"
 
@@ -32,39 +31,36 @@ struct SkateOnSphere {
 
   template <class T>
   [[nodiscard]] Matrix<T, 6, 6> mass(const Vector<T, 6>& /*q*/) const {
-    Matrix<T, 6, 6> m = Matrix<T, 6, 6>::Constant(constant<T>(0));
+    Matrix<T, 6, 6> m = Matrix<T, 6, 6>::Zero();
     for (int i = 0; i < 3; ++i) {
-      m(i, i) = constant<T>(1);
-      m(3 + i, 3 + i) = constant<T>(beta * beta);
+      m(i, i) = 1;
+      m(3 + i, 3 + i) = beta * beta;
     }
     return m;
   }
 
   template <class T>
   [[nodiscard]] Matrix<T, 1, 6> constraints(const Vector<T, 6>& q) const {
-    const T zero = constant<T>(0);
     Matrix<T, 1, 6> g;
-    g << q[1] * q[5] - q[2] * q[4], q[2] * q[3] - q[0] * q[5], q[0] * q[4] - q[1] * q[3], zero,
-        zero, zero;
+    g << q[1] * q[5] - q[2] * q[4], q[2] * q[3] - q[0] * q[5], q[0] * q[4] - q[1] * q[3], 0, 0, 0;
     return g;
   }
 
   template <class T>
   [[nodiscard]] Vector<T, 3> holonomic(const Vector<T, 6>& q) const {
-    const T half = constant<T>(0.5);
     const Vector<T, 3> x = q.template head<3>();
     const Vector<T, 3> e = q.template tail<3>();
-    return {half * (dot(x, x) - constant<T>(1)), half * (dot(e, e) - constant<T>(1)), dot(x, e)};
+    return {0.5 * (dot(x, x) - 1), 0.5 * (dot(e, e) - 1), dot(x, e)};
   }
 
   // x' along x or e, any e'.
   template <class T>
   [[nodiscard]] Matrix<T, 6, 5> frame(const Vector<T, 6>& q) const {
-    Matrix<T, 6, 5> b = Matrix<T, 6, 5>::Constant(constant<T>(0));
+    Matrix<T, 6, 5> b = Matrix<T, 6, 5>::Zero();
     for (int i = 0; i < 3; ++i) {
       b(i, 0) = q[i];
       b(i, 1) = q[3 + i];
-      b(3 + i, 2 + i) = constant<T>(1);
+      b(3 + i, 2 + i) = 1;
     }
     return b;
   }
@@ -74,11 +70,11 @@ struct SkateOnSphere {
   [[nodiscard]] Matrix<T, 5, 5> frame_mass(const Vector<T, 6>& q) const {
     const Vector<T, 3> x = q.template head<3>();
     const Vector<T, 3> e = q.template tail<3>();
-    Matrix<T, 5, 5> a = Matrix<T, 5, 5>::Constant(constant<T>(0));
+    Matrix<T, 5, 5> a = Matrix<T, 5, 5>::Zero();
     a(0, 0) = dot(x, x);
     a(0, 1) = a(1, 0) = dot(x, e);
     a(1, 1) = dot(e, e);
-    a(2, 2) = a(3, 3) = a(4, 4) = constant<T>(beta * beta);
+    a(2, 2) = a(3, 3) = a(4, 4) = beta * beta;
     return a;
   }
 

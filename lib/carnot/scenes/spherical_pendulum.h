@@ -8,7 +8,6 @@
 #include <array>
 
 #include "carnot/numerics/linear_algebra.h"
-#include "carnot/numerics/scalar.h"
 #include "carnot/scene/scene_info.h"
 
 namespace carnot::scenes {
@@ -23,9 +22,7 @@ struct SphericalPendulum {
 
   template <class T>
   [[nodiscard]] Matrix<T, 3, 3> mass(const Vector<T, 3>& /*q*/) const {
-    Matrix<T, 3, 3> m = Matrix<T, 3, 3>::Constant(constant<T>(0));
-    m(0, 0) = m(1, 1) = m(2, 2) = constant<T>(1);
-    return m;
+    return diagonal<T>(1, 1, 1);
   }
 
   template <class T>
@@ -35,12 +32,12 @@ struct SphericalPendulum {
 
   template <class T>
   [[nodiscard]] Vector<T, 1> holonomic(const Vector<T, 3>& q) const {
-    return Vector<T, 1>(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] - constant<T>(length * length));
+    return Vector<T, 1>(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] - length * length);
   }
 
   template <class T>
   [[nodiscard]] T potential(const Vector<T, 3>& q) const {
-    return constant<T>(gravity) * q[2];
+    return gravity * q[2];
   }
 
   static constexpr auto parameters() {

@@ -26,7 +26,6 @@
 #include <utility>
 
 #include "carnot/numerics/linear_algebra.h"
-#include "carnot/numerics/scalar.h"
 #include "carnot/scene/body.h"
 #include "carnot/scene/scene_info.h"
 
@@ -42,8 +41,8 @@ struct Trailers {
 
   template <class T>
   [[nodiscard]] Matrix<T, kDof, kDof> mass(const Vector<T, kDof>& /*q*/) const {
-    Matrix<T, kDof, kDof> m = Matrix<T, kDof, kDof>::Constant(constant<T>(0));
-    for (int i = 0; i < kDof; ++i) m(i, i) = constant<T>(i < 3 ? 1 : trailer_weight);
+    Matrix<T, kDof, kDof> m = Matrix<T, kDof, kDof>::Zero();
+    for (int i = 0; i < kDof; ++i) m(i, i) = i < 3 ? 1 : trailer_weight;
     return m;
   }
 
@@ -51,12 +50,12 @@ struct Trailers {
   [[nodiscard]] Matrix<T, kMultipliers, kDof> constraints(const Vector<T, kDof>& q) const {
     using std::cos, std::sin;
     using G = Matrix<T, kMultipliers, kDof>;
-    G g = G::Constant(constant<T>(0));
+    G g = G::Zero();
     for (int i = 0; i <= count; ++i) {
       g(i, 0) = sin(q[2 + i]);
       g(i, 1) = -cos(q[2 + i]);
       for (int j = 1; j < i; ++j) g(i, 2 + j) = cos(q[2 + i] - q[2 + j]);
-      if (i > 0) g(i, 2 + i) = constant<T>(1);
+      if (i > 0) g(i, 2 + i) = 1;
     }
     return g;
   }
@@ -64,11 +63,11 @@ struct Trailers {
   template <class T>
   [[nodiscard]] Matrix<T, kDof, 2> frame(const Vector<T, kDof>& q) const {
     using std::cos, std::sin;
-    Matrix<T, kDof, 2> b = Matrix<T, kDof, 2>::Constant(constant<T>(0));
+    Matrix<T, kDof, 2> b = Matrix<T, kDof, 2>::Zero();
     b(0, 0) = cos(q[2]);
     b(1, 0) = sin(q[2]);
-    b(2, 1) = constant<T>(1);
-    T speed = constant<T>(1);
+    b(2, 1) = 1;
+    T speed = 1;
     for (int i = 1; i <= count; ++i) {
       b(2 + i, 0) = speed * sin(q[1 + i] - q[2 + i]);
       speed *= cos(q[1 + i] - q[2 + i]);
@@ -79,10 +78,10 @@ struct Trailers {
   // The diagonal of B'M B.
   template <class T>
   [[nodiscard]] Vector<T, 2> frame_masses(const Vector<T, kDof>& q) const {
-    Vector<T, 2> masses(constant<T>(1), constant<T>(1));
+    Vector<T, 2> masses(1, 1);
     if (trailer_weight == 0) return masses;
     const Matrix<T, kDof, 2> b = frame(q);
-    for (int i = 3; i < kDof; ++i) masses[0] += constant<T>(trailer_weight) * b(i, 0) * b(i, 0);
+    for (int i = 3; i < kDof; ++i) masses[0] += trailer_weight * b(i, 0) * b(i, 0);
     return masses;
   }
 
@@ -103,11 +102,11 @@ struct Trailers {
       speed[i] = v;
       v *= c[i];
     }
-    Vector<T, kDof> gradient = Vector<T, kDof>::Constant(constant<T>(0));
+    Vector<T, kDof> gradient = Vector<T, kDof>::Zero();
     gradient[2] = u[0] * (p[1] * cos(q[2]) - p[0] * sin(q[2]));
-    T by_speed = constant<T>(0);  // by v_i, of all behind axle i
+    T by_speed = 0;  // by v_i, of all behind axle i
     for (int i = count - 1; i >= 0; --i) {
-      const T excess = p[3 + i] - constant<T>(trailer_weight) * speed[i] * s[i];
+      const T excess = p[3 + i] - trailer_weight * speed[i] * s[i];
       const T by_angle = speed[i] * (excess * c[i] - by_speed * s[i]);
       gradient[2 + i] += by_angle;
       gradient[3 + i] -= by_angle;

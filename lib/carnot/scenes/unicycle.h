@@ -11,7 +11,6 @@
 #include <numbers>
 
 #include "carnot/numerics/linear_algebra.h"
-#include "carnot/numerics/scalar.h"
 #include "carnot/scene/body.h"
 #include "carnot/scene/scene_info.h"
 
@@ -25,27 +24,23 @@ struct Unicycle {
 
   template <class T>
   [[nodiscard]] Matrix<T, 3, 3> mass(const Vector<T, 3>& /*q*/) const {
-    Matrix<T, 3, 3> m = Matrix<T, 3, 3>::Constant(constant<T>(0));
-    m(0, 0) = m(1, 1) = constant<T>(1);
-    m(2, 2) = constant<T>(beta * beta);
-    return m;
+    return diagonal<T>(1, 1, beta * beta);
   }
 
   template <class T>
   [[nodiscard]] Matrix<T, 1, 3> constraints(const Vector<T, 3>& q) const {
     using std::cos, std::sin;
-    return {sin(q[2]), -cos(q[2]), constant<T>(0)};
+    return {sin(q[2]), -cos(q[2]), 0};
   }
 
   template <class T>
   [[nodiscard]] Matrix<T, 3, 2> frame(const Vector<T, 3>& q) const {
     using std::cos, std::sin;
-    const T zero = constant<T>(0);
     Matrix<T, 3, 2> b;
     // clang-format off
-    b << cos(q[2]), zero,
-         sin(q[2]), zero,
-         zero,      constant<T>(1);
+    b << cos(q[2]), 0,
+         sin(q[2]), 0,
+         0,         1;
     // clang-format on
     return b;
   }
@@ -53,7 +48,7 @@ struct Unicycle {
   // The diagonal of B'M B.
   template <class T>
   [[nodiscard]] Vector<T, 2> frame_masses(const Vector<T, 3>& /*q*/) const {
-    return {constant<T>(1), constant<T>(beta * beta)};
+    return {1, beta * beta};
   }
 
   // d/dq [p.B u - u'B'M B u/2].
@@ -62,8 +57,7 @@ struct Unicycle {
                                             const Vector<T, 3>& p,
                                             const Vector<T, 2>& u) const {
     using std::cos, std::sin;
-    const T zero = constant<T>(0);
-    return {zero, zero, u[0] * (p[1] * cos(q[2]) - p[0] * sin(q[2]))};
+    return {0, 0, u[0] * (p[1] * cos(q[2]) - p[0] * sin(q[2]))};
   }
 
   static constexpr auto parameters() {

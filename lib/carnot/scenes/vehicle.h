@@ -18,7 +18,6 @@
 #include <numbers>
 
 #include "carnot/numerics/linear_algebra.h"
-#include "carnot/numerics/scalar.h"
 #include "carnot/scene/body.h"
 #include "carnot/scene/scene_info.h"
 
@@ -34,21 +33,16 @@ struct Vehicle {
 
   template <class T>
   [[nodiscard]] Matrix<T, 4, 4> mass(const Vector<T, 4>& /*q*/) const {
-    Matrix<T, 4, 4> m = Matrix<T, 4, 4>::Constant(constant<T>(0));
-    m(0, 0) = m(1, 1) = constant<T>(1);
-    m(2, 2) = constant<T>(alpha);
-    m(3, 3) = constant<T>(beta);
-    return m;
+    return diagonal<T>(1, 1, alpha, beta);
   }
 
   template <class T>
   [[nodiscard]] Matrix<T, 2, 4> constraints(const Vector<T, 4>& q) const {
     using std::cos, std::sin;
-    const T zero = constant<T>(0);
     Matrix<T, 2, 4> g;
     // clang-format off
-    g << sin(q[3]), -cos(q[3]), zero,                zero,
-         sin(q[2]), -cos(q[2]), constant<T>(length), zero;
+    g << sin(q[3]), -cos(q[3]), 0,      0,
+         sin(q[2]), -cos(q[2]), length, 0;
     // clang-format on
     return g;
   }
@@ -56,13 +50,12 @@ struct Vehicle {
   template <class T>
   [[nodiscard]] Matrix<T, 4, 2> frame(const Vector<T, 4>& q) const {
     using std::cos, std::sin;
-    const T zero = constant<T>(0);
     Matrix<T, 4, 2> b;
     // clang-format off
-    b << cos(q[3]),                                 zero,
-         sin(q[3]),                                 zero,
-         sin(q[3] - q[2]) * constant<T>(1 / length),    zero,
-         zero,                                      constant<T>(1);
+    b << cos(q[3]),                       0,
+         sin(q[3]),                       0,
+         sin(q[3] - q[2]) * (1 / length), 0,
+         0,                               1;
     // clang-format on
     return b;
   }
@@ -71,8 +64,8 @@ struct Vehicle {
   template <class T>
   [[nodiscard]] Vector<T, 2> frame_masses(const Vector<T, 4>& q) const {
     using std::sin;
-    const T turn = sin(q[3] - q[2]) * constant<T>(1 / length);
-    return {constant<T>(1) + constant<T>(alpha) * turn * turn, constant<T>(beta)};
+    const T turn = sin(q[3] - q[2]) * (1 / length);
+    return {1 + alpha * turn * turn, beta};
   }
 
   // d/dq [p.B u - u'B'M B u/2]: theta and phi enter by phi and delta only.
@@ -82,11 +75,11 @@ struct Vehicle {
                                             const Vector<T, 2>& u) const {
     using std::cos, std::sin;
     const T delta = q[3] - q[2];
-    const T turn = u[0] * cos(delta) * constant<T>(1 / length);  // d theta' / d delta
-    const T theta_dot = u[0] * sin(delta) * constant<T>(1 / length);
-    const T by_delta = turn * (p[2] - constant<T>(alpha) * theta_dot);
+    const T turn = u[0] * cos(delta) * (1 / length);  // d theta' / d delta
+    const T theta_dot = u[0] * sin(delta) * (1 / length);
+    const T by_delta = turn * (p[2] - alpha * theta_dot);
     Vector<T, 4> gradient;
-    gradient[0] = gradient[1] = constant<T>(0);
+    gradient[0] = gradient[1] = 0;
     gradient[2] = -by_delta;
     gradient[3] = by_delta + u[0] * (p[1] * cos(q[3]) - p[0] * sin(q[3]));
     return gradient;

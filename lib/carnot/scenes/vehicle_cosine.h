@@ -24,7 +24,7 @@ struct VehicleCosine : Vehicle {
                                             const Vector<T, 2>& u) const {
     const Vector<T, 2> m = midpoint(q);
     const T slope = stumpff<1>(T(m[0] * m[0] + m[1] * m[1]));
-    const T half = constant<T>(0.5 * length);
+    const double half = 0.5 * length;
     Vector<T, 4> gradient = Vehicle::frame_gradient(q, p, u);
     gradient[0] += slope * m[0];
     gradient[1] += slope * m[1];
@@ -45,7 +45,7 @@ struct VehicleCosine : Vehicle {
  private:
   template <class T>
   [[nodiscard]] Vector<T, 2> midpoint(const Vector<T, 4>& q) const {
-    const T half = constant<T>(0.5 * length);
+    const double half = 0.5 * length;
     const Vector<T, 2> body = heading(q);
     return {q[0] - half * body[0], q[1] - half * body[1]};
   }
