@@ -9,12 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "testing/canonical.h"
 #include "testing/random_points.h"
 
 namespace carnot::darboux_test {
 namespace {
 
 using Eigen::MatrixXd;
+using test::canonical;
 using ::testing::HasSubstr;
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -53,8 +55,6 @@ Form form_of(const MatrixXd& j, Rest... rest) {
   const DarbouxForm form = darboux_form(numbers(j), static_cast<int>(j.rows()), rest...);
   return {form.dof, square(form.basis), square(form.inverse), form.sigma};
 }
-
-MatrixXd canonical(int size, int dof) { return square(canonical_structure(size, dof)); }
 
 // A product of reflections: orthogonal to a few eps.
 MatrixXd random_orthogonal(int size, test::Generator& generator) {

@@ -45,7 +45,7 @@ struct OneVariable {
   static constexpr int kDof = 1;
 
   Kind kind = Kind::kSquare;
-  Matrix<double, 3, 3> j = test::canonical<3, 1>();
+  Matrix<double, 3, 3> j = test::canonical(3, 1);
 
   template <class T>
   [[nodiscard]] T hamiltonian(const Vector<T, 3>& z) const {
@@ -85,7 +85,7 @@ struct TwoVariables {
     if (kind == Kind::kOneOnly) kernel = half * z[2] * z[2];
     return half * z[1] * z[1] + z[0] * (z[2] - z[3]) + kernel;
   }
-  [[nodiscard]] Matrix<double, 4, 4> structure_matrix() const { return test::canonical<4, 1>(); }
+  [[nodiscard]] Matrix<double, 4, 4> structure_matrix() const { return test::canonical(4, 1); }
   // Right for a scale of 1 only.
   [[nodiscard]] Matrix<double, 4, 4> darboux_basis() const {
     return scale * Matrix<double, 4, 4>::Identity();

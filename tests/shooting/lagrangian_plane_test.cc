@@ -8,6 +8,7 @@
 
 #include "carnot/shooting/linear/dense.h"
 #include "shooting/symplectic.h"
+#include "testing/canonical.h"
 
 namespace carnot::internal::lagrangian_plane_test {
 namespace {
@@ -64,7 +65,7 @@ TEST(LagrangianPlane, PhasesVanishWithTheKernelOfX) {
 // What a symplectic map makes of a plane is one, too.
 TEST(LagrangianPlane, SymplecticImagesHaveUnitaryBases) {
   const MatrixXd image = orthonormal(test::symplectic_shear(2) * plane_of(0.4, 1.1));
-  const MatrixXd w = image.transpose() * test::structure_matrix(2) * image;
+  const MatrixXd w = image.transpose() * test::canonical(4, 2) * image;
   EXPECT_LE(w.norm(), kRounded);
   EXPECT_TRUE(phases_of(image).angles.allFinite());
 }

@@ -1,16 +1,9 @@
-// The structure matrix J, and a symplectic matrix to try things on.
+// A symplectic matrix to try things on.
 #pragma once
 
 #include <Eigen/Core>
 
 namespace carnot::test {
-
-inline Eigen::MatrixXd structure_matrix(int n) {
-  Eigen::MatrixXd j = Eigen::MatrixXd::Zero(2 * n, 2 * n);
-  j.topRightCorner(n, n).setIdentity();
-  j.bottomLeftCorner(n, n) = -Eigen::MatrixXd::Identity(n, n);
-  return j;
-}
 
 // A product of shears q += S p, p += S q with a symmetric S.
 inline Eigen::MatrixXd symplectic_shear(int n) {

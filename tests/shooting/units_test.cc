@@ -6,6 +6,7 @@
 #include "carnot/shooting/linear/dense.h"
 #include "shooting/problems.h"
 #include "shooting/symplectic.h"
+#include "testing/canonical.h"
 
 namespace carnot::internal::units_test {
 namespace {
@@ -40,7 +41,7 @@ TEST_F(UnitsTest, ScenesWithoutTranscriptionHaveNone) {
 
 TEST_F(UnitsTest, KeepSymplecticMaps) {
   ASSERT_TRUE(units.scaled());
-  const MatrixXd j = test::structure_matrix(3);
+  const MatrixXd j = test::canonical(6, 3);
   const MatrixXd scaled = units.map(shear);
   EXPECT_LE((scaled.transpose() * j * scaled - j).norm(), kRounded * scaled.squaredNorm());
   EXPECT_LE((units.map(MatrixXd::Identity(6, 6)) - MatrixXd::Identity(6, 6)).norm(), kRounded);

@@ -6,18 +6,10 @@
 #include "carnot/numerics/gradient.h"
 #include "carnot/numerics/lu.h"
 #include "carnot/scene/generalized_hamiltonian_scene.h"
+#include "testing/canonical.h"
 #include "testing/random_points.h"
 
 namespace carnot::test {
-
-// J_0 of size N and rank 2n.
-template <int N, int n>
-Matrix<double, N, N> canonical() {
-  Matrix<double, N, N> j = Matrix<double, N, N>::Zero();
-  j.template block<n, n>(0, n) = -Matrix<double, n, n>::Identity();
-  j.template block<n, n>(n, 0) = Matrix<double, n, n>::Identity();
-  return j;
-}
 
 // A^-1 B, so that no test needs a decomposition.
 template <int N, int M>
@@ -92,7 +84,7 @@ struct AsGeneralized {
     return constant<T>(0.5) * sum;
   }
   [[nodiscard]] Matrix<double, kSize, kSize> structure_matrix() const {
-    return canonical<kSize, kDof>();
+    return canonical(kSize, kDof);
   }
 };
 
@@ -108,7 +100,7 @@ struct LambdaH {
     const T h = half * (z[0] * z[0] + z[1] * z[1] - constant<T>(1));
     return half * (z[2] * z[2] + z[3] * z[3]) + z[4] * h;
   }
-  [[nodiscard]] Matrix<double, 5, 5> structure_matrix() const { return canonical<5, 2>(); }
+  [[nodiscard]] Matrix<double, 5, 5> structure_matrix() const { return canonical(5, 2); }
 };
 
 // J (z1 - z0)/h = grad H((z0 + z1)/2), eq. (15) of the paper, in the scene's own coordinates: N

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "carnot/flow/flow.h"
+#include "carnot/numerics/canonical_structure.h"
 #include "carnot/step/tangent.h"
 
 namespace carnot {
@@ -30,13 +31,10 @@ FlowReport tangent_flow(
   return report;
 }
 
-// max-norm of M'JM - J with J = (0, -I; I, 0), the sign of J z' = grad H. Zero for a symplectic M.
+// max-norm of M'JM - J. Zero for a symplectic M.
 template <class T, int size>
 T symplecticity_defect(const Matrix<T, size, size>& m) {
-  constexpr int n = size / 2;
-  Matrix<T, size, size> j = Matrix<T, size, size>::Zero();
-  j.template topRightCorner<n, n>() = -Matrix<T, n, n>::Identity();
-  j.template bottomLeftCorner<n, n>() = Matrix<T, n, n>::Identity();
+  const auto j = canonical_structure<Matrix<T, size, size>>(size, size / 2);
   return (m.transpose() * j * m - j).cwiseAbs().maxCoeff();
 }
 

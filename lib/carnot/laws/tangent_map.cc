@@ -3,19 +3,13 @@
 #include <Eigen/Core>
 #include <algorithm>
 
+#include "carnot/numerics/canonical_structure.h"
 #include "carnot/numerics/linear_algebra.h"
 
 namespace carnot {
 namespace {
 
 using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-Square structure_matrix(int n) {
-  Square j = Square::Zero(2 * n, 2 * n);
-  j.topRightCorner(n, n) = -Square::Identity(n, n);
-  j.bottomLeftCorner(n, n) = Square::Identity(n, n);
-  return j;
-}
 
 // Steps `first`, ..., `last` - 1 of the plan.
 StepPlan piece(const StepPlan& plan, long first, long last) {
@@ -43,7 +37,7 @@ TangentMap tangent_along(const Dynamics& dynamics,
     const double fraction = static_cast<double>(last) / static_cast<double>(plan.count);
     if (progress && !progress(fraction)) map.status = FlowStatus::kStopped;
   }
-  const Square j = structure_matrix(n);
+  const auto j = canonical_structure<Square>(2 * n, n);
   map.m.assign(m.data(), m.data() + m.size());
   Square defect = m.transpose() * j * m - j;
   if (dynamics.forced > 0) {

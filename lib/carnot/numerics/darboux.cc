@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "carnot/numerics/canonical_structure.h"
 #include "carnot/numerics/lu.h"
 
 namespace carnot {
@@ -173,15 +174,6 @@ void complete(Square& u, int from) {
 
 }  // namespace
 
-std::vector<double> canonical_structure(int size, int dof) {
-  Square j = Square::Zero(size, size);
-  for (int i = 0; i < dof; ++i) {
-    j(i, dof + i) = -1;
-    j(dof + i, i) = 1;
-  }
-  return numbers(j);
-}
-
 DarbouxForm darboux_form(std::span<const double> structure_matrix, int size) {
   const Square j = checked(square(structure_matrix, size));
   std::vector<Pair> pairs = pairs_the_coordinates(j) ? own_pairs(j) : schur_pairs(j);
@@ -231,8 +223,7 @@ DarbouxForm darboux_form(std::span<const double> structure_matrix,
   const Square j = checked(square(structure_matrix, size));
   const Square basis = square(own_basis, size);
   const Square jt = j.lazyProduct(basis);
-  const Square moved =
-      basis.transpose().lazyProduct(jt) - square(canonical_structure(size, dof), size);
+  const Square moved = basis.transpose().lazyProduct(jt) - canonical_structure<Square>(size, dof);
   const Square sizes = basis.cwiseAbs().transpose().lazyProduct(jt.cwiseAbs());
   const double defect = moved.cwiseAbs().maxCoeff();
   if (!(defect <= round_off(j) * sizes.maxCoeff())) {

@@ -3,9 +3,9 @@
 // J z' = grad H(z) keeps its form under a linear map z = T x: T'J T x' = grad_x H(T x). There is a
 // T with
 //
-//                                     ( 0 -I  0 )
-//   x = (q, p, y),   T'J T = J_0  =   ( I  0  0 ),   that is q' = H_p, p' = -H_q, 0 = H_y.
-//                                     ( 0  0  0 )
+//   x = (q, p, y),   T'J T = J_0,   that is q' = H_p, p' = -H_q, 0 = H_y,
+//
+// with the J_0 of canonical_structure.h.
 //
 // The real Schur form of an antisymmetric J has blocks (0, -sigma; sigma, 0) and zeros on the
 // diagonal. The two columns of a block, over sqrt(sigma), are a pair (q_i, p_i); the columns of the
@@ -46,9 +46,6 @@ struct DarbouxForm {
   std::vector<double> inverse;
   std::vector<double> sigma;  // of the pairs (q_i, p_i); empty for a T written by hand
 };
-
-// J_0 of this size and rank 2 `dof`.
-std::vector<double> canonical_structure(int size, int dof);
 
 // The form of a J of this size. Throws std::invalid_argument for a J that is not finite, not
 // antisymmetric or zero. Cost about 10 N^3 multiplications.

@@ -14,6 +14,7 @@
 
 #include <array>
 
+#include "carnot/numerics/canonical_structure.h"
 #include "carnot/step/rattle.h"
 #include "carnot/step/tangent.h"
 
@@ -162,10 +163,7 @@ template <HolonomicSystem System, class T>
 template <class T, int size>
 T manifold_symplecticity_defect(const Matrix<T, size, size>& m,
                                 const Matrix<T, size, size>& projector) {
-  constexpr int n = size / 2;
-  Matrix<T, size, size> j = Matrix<T, size, size>::Zero();
-  j.template topRightCorner<n, n>() = -Matrix<T, n, n>::Identity();
-  j.template bottomLeftCorner<n, n>() = Matrix<T, n, n>::Identity();
+  const auto j = canonical_structure<Matrix<T, size, size>>(size, size / 2);
   const Matrix<T, size, size> defect = product(m.transpose(), product(j, m)) - j;
   return product(projector, product(defect, projector)).cwiseAbs().maxCoeff();
 }
