@@ -10,6 +10,7 @@
 #include <string>
 
 #include "carnot/numerics/canonical_structure.h"
+#include "carnot/numerics/jacobi_rotations.h"
 #include "carnot/numerics/lu.h"
 
 namespace carnot {
@@ -101,35 +102,6 @@ Square tridiagonalise(Square& j) {
   return q;
 }
 
-// Rotates the columns of b, and those of y likewise, until they are orthogonal: B Y = X Sigma.
-void orthogonalise_columns(Square& b, Square& y) {
-  constexpr int kMaxSweeps = 60;  // matrices of the tests need up to ten
-  // What round-off of the products alone can leave.
-  const double zero = 2 * static_cast<double>(b.rows()) * std::numeric_limits<double>::epsilon();
-  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
-    bool rotated = false;
-    for (int i = 0; i + 1 < b.cols(); ++i) {
-      for (int j = i + 1; j < b.cols(); ++j) {
-        const double ii = b.col(i).squaredNorm();
-        const double jj = b.col(j).squaredNorm();
-        const double ij = b.col(i).dot(b.col(j));
-        if (!(std::abs(ij) > zero * std::sqrt(ii) * std::sqrt(jj))) continue;
-        rotated = true;
-        const double cot = (jj - ii) / (2 * ij);
-        const double tan = std::copysign(1 / (std::abs(cot) + std::hypot(1, cot)), cot);
-        const double cosine = 1 / std::hypot(1, tan);
-        for (Square* a : {&b, &y}) {
-          const Eigen::VectorXd left = a->col(i);
-          a->col(i) = cosine * (left - tan * a->col(j));
-          a->col(j) = cosine * (a->col(j) + tan * left);
-        }
-      }
-    }
-    if (!rotated) return;
-  }
-  throw std::invalid_argument("the Schur form of the structure matrix J was not found");
-}
-
 std::vector<Pair> schur_pairs(const Square& matrix) {
   const double scale = matrix.cwiseAbs().maxCoeff();
   Square j = matrix / scale;
@@ -141,7 +113,10 @@ std::vector<Pair> schur_pairs(const Square& matrix) {
   for (int c = 0; c < odd; ++c) {
     for (int r = 0; r < size - odd; ++r) b(r, c) = j(2 * r, 2 * c + 1);
   }
-  orthogonalise_columns(b, y);
+  // B Y = X Sigma.
+  if (!orthogonalise_columns(size - odd, odd, b.data(), y.data())) {
+    throw std::invalid_argument("the Schur form of the structure matrix J was not found");
+  }
   std::vector<Pair> pairs;
   for (int c = 0; c < odd; ++c) {
     const double sigma = b.col(c).norm();
