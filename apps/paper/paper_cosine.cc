@@ -7,6 +7,7 @@
 #include <cmath>
 #include <span>
 
+#include "carnot/laws/laws.h"
 #include "carnot/plots/series_plot.h"
 
 namespace carnot::apps {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "carnot/dynamics.h"
-#include "carnot/laws/laws.h"
 #include "carnot/laws/tangent_map.h"
+#include "carnot/numerics/line_fit.h"
 
 namespace carnot::apps {
 

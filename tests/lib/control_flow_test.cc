@@ -182,7 +182,7 @@ TYPED_TEST(DriftTest, OrderBySlope) {
     step.push_back(2.0 / static_cast<double>(steps));
     error.push_back(distance(end_point(this->system_, this->q_, this->p_, 2, steps), exact));
   }
-  const test::LineFit fit = test::fit_order(step, error, 1e-13, 1e-2);
+  const LineFit fit = test::fit_order(step, error, 1e-13, 1e-2);
   EXPECT_GE(fit.points, 3);
   EXPECT_GT(fit.correlation, 0.99);
   EXPECT_NEAR(fit.slope, 2 * kStages, kSlopeTolerance);

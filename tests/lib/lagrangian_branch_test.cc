@@ -213,7 +213,7 @@ TEST(LagrangianBranchTest, OrderOfAGaussMethod) {
       steps.push_back(kDuration / static_cast<double>(count));
       errors.push_back((end(Gauss<System, 2>(system), count) - reference).norm());
     }
-    const test::LineFit fit = test::fit_order(steps, errors, 1e-12, 1e-3);
+    const LineFit fit = test::fit_order(steps, errors, 1e-12, 1e-3);
     EXPECT_GE(fit.points, 4);
     EXPECT_GT(fit.correlation, 0.99);
     EXPECT_NEAR(fit.slope, 4, 0.15);

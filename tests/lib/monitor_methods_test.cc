@@ -72,7 +72,7 @@ TEST_P(DrivenEnergyTest, BalanceHasTheOrderOfTheMethod) {
     steps.push_back(kDuration / count);
     errors.push_back(monitor.energy_balance());
   }
-  const test::LineFit fit = test::fit_order(steps, errors, kPlateau, kCeiling);
+  const LineFit fit = test::fit_order(steps, errors, kPlateau, kCeiling);
   EXPECT_GE(fit.points, 3);
   EXPECT_GT(fit.correlation, 0.99);
   EXPECT_NEAR(fit.slope, tableau.order, kSlopeTolerance);

@@ -70,7 +70,7 @@ TEST_P(OrderOfMethodTest, SlopeOfTheError) {
     const Vector<T, 8> error = end_point(tableau, count) - reference();
     errors.push_back(static_cast<double>(error.cwiseAbs().maxCoeff()));
   }
-  const test::LineFit fit = test::fit_order(steps, errors, kPlateau, kCeiling);
+  const LineFit fit = test::fit_order(steps, errors, kPlateau, kCeiling);
   EXPECT_GE(fit.points, 3);
   EXPECT_GT(fit.correlation, 0.99);
   EXPECT_NEAR(fit.slope, tableau.order, kSlopeTolerance);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "carnot/flow/tangent_flow.h"
+#include "carnot/numerics/line_fit.h"
 #include "carnot/step/rattle_tangent.h"
 #include "carnot/tableau/composition_tableau.h"
 #include "testing/order.h"

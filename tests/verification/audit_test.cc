@@ -246,14 +246,5 @@ TEST(MethodAudit, SaysWhatWasNotMeasured) {
   EXPECT_TRUE(measure_order(subject.dynamics("gauss4"), ReferenceRun()).errors.empty());
 }
 
-TEST(FitLine, IsExactOnALine) {
-  const LineFit fit = fit_line({0, 1, 2, 4}, {1, 3, 5, 9});
-  EXPECT_DOUBLE_EQ(fit.slope, 2);
-  EXPECT_DOUBLE_EQ(fit.correlation, 1);
-  EXPECT_LE(fit.standard_error, 10 * kEps);
-  EXPECT_EQ(fit.points, 4);
-  EXPECT_TRUE(std::isnan(fit_line({1}, {1}).slope));
-}
-
 }  // namespace
 }  // namespace carnot::apps::audit_test

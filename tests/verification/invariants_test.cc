@@ -8,8 +8,8 @@
 
 #include "carnot/flow/flow.h"
 #include "carnot/flow/monitor.h"
+#include "carnot/numerics/line_fit.h"
 #include "carnot/step/gauss.h"
-#include "testing/order.h"
 #include "testing/runs.h"
 
 namespace carnot::invariants_test {
@@ -129,7 +129,7 @@ void expect_no_energy_drift(const Scene& scene, const State<double, Scene::kDof>
   }
   EXPECT_GT(early, 1e4 * kEps) << "the step is too small to show anything";
   EXPECT_LE(all, 1.25 * early);
-  const test::LineFit fit = test::fit_line(times, errors);
+  const LineFit fit = fit_line(times, errors);
   EXPECT_LT(std::abs(fit.correlation), 0.02);
   EXPECT_LT(std::abs(fit.slope) * plan.end, 0.05 * all);
 }

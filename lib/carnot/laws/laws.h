@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "carnot/dynamics.h"
+#include "carnot/numerics/line_fit.h"
 
 namespace carnot {
 
@@ -20,16 +21,6 @@ struct PhaseStart {
   double t = 0;
   std::vector<double> z;
 };
-
-// Least squares line through points.
-struct LineFit {
-  double slope = kNotMeasured;
-  double standard_error = kNotMeasured;  // of the slope
-  double correlation = kNotMeasured;
-  int points = 0;
-};
-
-LineFit fit_line(const std::vector<double>& x, const std::vector<double>& y);
 
 // A run to compare with.
 struct ReferenceRun {
