@@ -22,6 +22,7 @@
 #include <utility>
 
 #include "carnot/numerics/darboux.h"
+#include "carnot/numerics/evenly_spread.h"
 #include "carnot/numerics/gradient.h"
 #include "carnot/scene/generalized_hamiltonian_scene.h"
 #include "carnot/system/index_one_system.h"
@@ -272,12 +273,7 @@ class GeneralizedHamiltonian {
     bool singular = false;
     for (int k = 0; k < kPoints; ++k) {
       Vector<double, kSize> z;
-      for (int i = 0; i < kSize; ++i) {
-        // Multiples of the golden section modulo 1: spread evenly, and the same in every run.
-        constexpr double kGolden = 0.6180339887498949;
-        const double turn = kGolden * static_cast<double>(k * kSize + i + 1);
-        z[i] = 2 * (turn - std::floor(turn)) - 1;
-      }
+      for (int i = 0; i < kSize; ++i) z[i] = evenly_spread(k * kSize + i + 1);
       Matrix<double, kAlgebraic, kSize> derivatives;
       if (!kernel_derivatives(z, derivatives)) continue;
       if (regular_in_kernel(derivatives)) return;

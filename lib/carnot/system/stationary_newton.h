@@ -16,6 +16,7 @@
 #include <concepts>
 #include <limits>
 
+#include "carnot/numerics/evenly_spread.h"
 #include "carnot/numerics/gradient.h"
 #include "carnot/numerics/scaled_lu.h"
 #include "carnot/system/index_one_system.h"
@@ -263,12 +264,7 @@ template <class System, class T>
   constexpr int kMore = 8;
   for (int k = 1; k <= kMore; ++k) {
     Vector<T, m> x = start;
-    for (int i = 0; i < m; ++i) {
-      // Multiples of the golden section modulo 1: spread evenly, and the same in every run.
-      constexpr double kGolden = 0.6180339887498949;
-      const double turn = kGolden * static_cast<double>(k * m + i);
-      x[i] += radius * T(2 * (turn - std::floor(turn)) - 1);
-    }
+    for (int i = 0; i < m; ++i) x[i] += radius * T(evenly_spread(k * m + i));
     if (settled(x)) return result;
   }
   return result;
