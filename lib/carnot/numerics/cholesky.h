@@ -10,6 +10,7 @@
 
 #include "carnot/numerics/gradient.h"
 #include "carnot/numerics/linear_algebra.h"
+#include "carnot/numerics/round_off.h"
 #include "carnot/numerics/scalar.h"
 
 namespace carnot {
@@ -20,8 +21,7 @@ template <class T, int n>
 [[nodiscard]] bool cholesky_factor(const Matrix<T, n, n>& a,
                                    Matrix<T, n, n>& lower,
                                    Vector<T, n>& pivots) {
-  // A pivot must exceed the round-off that its own row can produce.
-  const T threshold = constant<T>(16 * n * epsilon<T>());
+  const T threshold = constant<T>(pivot_round_off<Real<T>>(n));
   bool positive = true;
   for (int j = 0; j < n; ++j) {
     T pivot = a(j, j);
@@ -75,7 +75,7 @@ class Cholesky {
   }
 
  private:
-  static constexpr Real<T> kThreshold = 16 * n * epsilon<T>();
+  static constexpr Real<T> kThreshold = pivot_round_off<Real<T>>(n);
   Matrix<T, n, n> lower_;
   Vector<T, n> inverses_;  // 1/D: one division a pivot, the slowest of operations
   bool positive_;

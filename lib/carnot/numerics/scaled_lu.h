@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "carnot/numerics/linear_algebra.h"
+#include "carnot/numerics/round_off.h"
 #include "carnot/numerics/scalar.h"
 
 namespace carnot {
@@ -20,7 +21,7 @@ class ScaledLu {
   explicit ScaledLu(const Matrix<T, m, m>& a) : lu_(a) {
     using std::abs;
     balance();
-    const T threshold = T(16 * m) * epsilon<T>();
+    const T threshold = pivot_round_off<T>(m);
     for (int j = 0; j < m; ++j) {
       int pivot = j;
       for (int i = j + 1; i < m; ++i) {

@@ -19,6 +19,7 @@
 #include <limits>
 
 #include "carnot/numerics/lu.h"
+#include "carnot/numerics/round_off.h"
 #include "carnot/step/step_report.h"
 #include "carnot/system/holonomic.h"
 #include "carnot/system/phase_space.h"
@@ -75,11 +76,11 @@ class RattleMidpoint {
       find_correction(system, node, z);
       T size = correction_size();
       if (size == T(0)) return found(report);
-      if (size <= T(kRoundOff) && !(size < smallest / T(2))) {
+      if (size <= T(kStalledRoundOff) && !(size < smallest / T(2))) {
         if (!grace || size <= T(1)) return found(report);
         grace = false;
       }
-      if (iteration > 0 && size > T(kRoundOff) && !(size < last / T(kContraction))) {
+      if (iteration > 0 && size > T(kStalledRoundOff) && !(size < last / T(kContraction))) {
         if (++renewals > kMaxRenewals || !renew(system, node, t, h, z, report)) return false;
         find_correction(system, node, z);
         size = correction_size();
@@ -123,7 +124,6 @@ class RattleMidpoint {
   static constexpr int kMaxIterations = 100;
   static constexpr int kMaxRenewals = 20;
   static constexpr int kContraction = 4;  // of a matrix that is worth keeping
-  static constexpr int kRoundOff = 100;   // times the rounding error of the equations, at most
 
   using Unknowns = Vector<T, kUnknowns>;
 

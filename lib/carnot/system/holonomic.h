@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "carnot/numerics/lu.h"
+#include "carnot/numerics/round_off.h"
 #include "carnot/scene/velocity_constrained_scene.h"
 #include "carnot/system/phase_space.h"
 
@@ -118,7 +119,6 @@ template <class System, class T>
   constexpr int n = System::kDof;
   constexpr int l = kHolonomicOf<System>;
   constexpr int kMaxIterations = 50;
-  constexpr int kRoundOff = 100;
   const State<T, n> start = z;
   const Matrix<T, n, l> lever = product(dh.transpose(), inverse);
   T smallest = std::numeric_limits<T>::max();
@@ -140,7 +140,7 @@ template <class System, class T>
     const T resolution = epsilon<T>() * rounding;
     if (change <= resolution) return RateStatus::kOk;
     if (!(change < smallest)) {
-      return change <= T(kRoundOff) * resolution ? RateStatus::kOk : RateStatus::kNoSolution;
+      return change <= T(kStalledRoundOff) * resolution ? RateStatus::kOk : RateStatus::kNoSolution;
     }
     smallest = change;
     nu += product(inverse, violated);
@@ -183,7 +183,6 @@ template <class Scene, class T>
   constexpr int n = Scene::kDof;
   constexpr int l = Scene::kHolonomic;
   constexpr int kMaxIterations = 50;
-  constexpr int kRoundOff = 100;
   Vector<T, n> x = q;
   T smallest = std::numeric_limits<T>::max();
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
@@ -196,7 +195,8 @@ template <class Scene, class T>
     const Vector<T, n> correction = product(dh.transpose(), multipliers);
     const T change = correction.cwiseAbs().maxCoeff();
     const T resolution = epsilon<T>() * x.cwiseAbs().maxCoeff();
-    if (change <= resolution || (!(change < smallest) && change <= T(kRoundOff) * resolution)) {
+    if (change <= resolution ||
+        (!(change < smallest) && change <= T(kStalledRoundOff) * resolution)) {
       q = x;
       return true;
     }

@@ -1,8 +1,9 @@
 #include "carnot/transcription/midpoint_transcription.h"
 
 #include <cmath>
-#include <limits>
 #include <vector>
+
+#include "carnot/numerics/round_off.h"
 
 namespace carnot {
 namespace {
@@ -91,8 +92,7 @@ void regularise(const Entries& e, const Rows& work) {
 // False where M is not positive definite to round-off.
 bool factor(const Entries& e) {
   const int width = e.rows.width();
-  // A pivot must exceed the round-off that its own row can produce.
-  const double threshold = 16 * e.n * std::numeric_limits<double>::epsilon();
+  const double threshold = pivot_round_off<double>(e.n);
   for (int j = 0; j < e.n; ++j) {
     double* const pivot = e.mass(j, j);
     const double diagonal = pivot[0];
