@@ -8,7 +8,7 @@
 #include "carnot/flow/flow.h"
 #include "carnot/scene/describe_scene.h"
 #include "carnot/scenes/appell.h"
-#include "carnot/scenes/driven_pendulum.h"
+#include "carnot/scenes/kapitza_pendulum.h"
 #include "carnot/scenes/relativistic_particle.h"
 #include "carnot/step/gauss.h"
 #include "carnot/system/lagrangian_system.h"
@@ -95,14 +95,14 @@ TEST(RelativisticParticleTest, MovesOnAHelix) {
   }
 }
 
-// ----- driven pendulum
+// ----- Kapitza pendulum
 
-using Pendulum = LagrangianSystem<scenes::DrivenPendulum>;
+using Pendulum = LagrangianSystem<scenes::KapitzaPendulum>;
 using One = Vector<double, 1>;
 static_assert(!Pendulum::kAutonomous && Particle::kAutonomous);
 
 // theta'' = -(gravity + Y'') sin(theta)/length by a fourth-order method: no Lagrangian in it.
-double by_newton(const scenes::DrivenPendulum& s, double theta, double duration, int steps) {
+double by_newton(const scenes::KapitzaPendulum& s, double theta, double duration, int steps) {
   using Z = Vector<long double, 2>;
   const auto f = [&](long double t, const Z& z) {
     const long double w = s.frequency;
@@ -124,7 +124,7 @@ double by_newton(const scenes::DrivenPendulum& s, double theta, double duration,
 
 // From rest at theta and t = 0, where Y' = 0 and so p = 0.
 template <class Observer>
-double swing(const scenes::DrivenPendulum& scene,
+double swing(const scenes::KapitzaPendulum& scene,
              double theta,
              double duration,
              long steps,
@@ -137,8 +137,8 @@ double swing(const scenes::DrivenPendulum& scene,
   return z.value[0];
 }
 
-TEST(DrivenPendulumTest, MovesByNewtonsLaw) {
-  const scenes::DrivenPendulum scene{1.2, 0.9, 0.15, 11};
+TEST(KapitzaPendulumTest, MovesByNewtonsLaw) {
+  const scenes::KapitzaPendulum scene{1.2, 0.9, 0.15, 11};
   const auto go_on = [](long, const auto&, const auto&) { return true; };
   // RK4 with 1/2000 of a shake per step leaves (11/2000)^4 times derivatives: below 1e-9.
   for (const double theta : {0.5, 2.0, 3.0}) {
@@ -148,9 +148,9 @@ TEST(DrivenPendulumTest, MovesByNewtonsLaw) {
 
 // H is not conserved, but dH/dt = H_t: what H has gained is the integral of H_t, by the quadrature
 // of the method itself over its stages.
-TEST(DrivenPendulumTest, EnergyChangesByThePowerOfThePivot) {
+TEST(KapitzaPendulumTest, EnergyChangesByThePowerOfThePivot) {
   using J = Jet<double, 1>;
-  const scenes::DrivenPendulum scene{1.2, 0.9, 0.15, 11};
+  const scenes::KapitzaPendulum scene{1.2, 0.9, 0.15, 11};
   const Pendulum system(scene);
   const auto energy = [&](double t, const auto& z) {
     One v(0);
@@ -186,8 +186,8 @@ TEST(DrivenPendulumTest, EnergyChangesByThePowerOfThePivot) {
   EXPECT_LE(worst, 1e-12);  // order 8 with a shake in 114 steps, and the round-off of 1200 steps
 }
 
-TEST(DrivenPendulumTest, WithoutShakingEnergyIsConserved) {
-  const scenes::DrivenPendulum scene{1.2, 0.9, 0, 11};
+TEST(KapitzaPendulumTest, WithoutShakingEnergyIsConserved) {
+  const scenes::KapitzaPendulum scene{1.2, 0.9, 0, 11};
   const Pendulum system(scene);
   const double start = -scene.gravity * scene.length * std::cos(2.0);
   double drift = 0;
@@ -203,9 +203,9 @@ TEST(DrivenPendulumTest, WithoutShakingEnergyIsConserved) {
 }
 
 // amplitude^2 frequency^2 > 2 gravity length: upside down is stable.
-TEST(DrivenPendulumTest, StandsUpsideDownWhereItIsShakenEnough) {
+TEST(KapitzaPendulumTest, StandsUpsideDownWhereItIsShakenEnough) {
   const auto farthest = [](double amplitude) {
-    scenes::DrivenPendulum scene;
+    scenes::KapitzaPendulum scene;
     scene.amplitude = amplitude;
     double angle = 0;
     swing(scene, kPi - 0.05, 30, 3000, [&](long, const auto&, const auto& z) {
@@ -223,7 +223,7 @@ TEST(DrivenPendulumTest, StandsUpsideDownWhereItIsShakenEnough) {
 template <class Scene>
 class LagrangianSceneInfoTest : public ::testing::Test {};
 using Scenes =
-    ::testing::Types<scenes::Appell, scenes::RelativisticParticle, scenes::DrivenPendulum>;
+    ::testing::Types<scenes::Appell, scenes::RelativisticParticle, scenes::KapitzaPendulum>;
 TYPED_TEST_SUITE(LagrangianSceneInfoTest, Scenes);
 
 // q -> D q, v -> D v leaves L, and |g|, as they are.

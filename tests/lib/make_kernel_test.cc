@@ -12,7 +12,7 @@
 
 #include "carnot/make_inlined_dynamics.h"
 #include "carnot/scenes/appell.h"
-#include "carnot/scenes/driven_pendulum.h"
+#include "carnot/scenes/kapitza_pendulum.h"
 #include "carnot/scenes/vehicle.h"
 
 namespace carnot::make_kernel_test {
@@ -57,8 +57,8 @@ Pair appell() {
 }
 
 // H depends on time.
-Pair driven_pendulum() {
-  const scenes::DrivenPendulum scene;
+Pair kapitza_pendulum() {
+  const scenes::KapitzaPendulum scene;
   return {make_dynamics(scene), make_inlined_dynamics(scene), {0.3, 0.1}, 1};
 }
 
@@ -148,7 +148,7 @@ TEST_P(MakeKernel, AutomaticFlowsReachTheTolerance) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, MakeKernel, ::testing::Values(vehicle, appell, driven_pendulum));
+INSTANTIATE_TEST_SUITE_P(Kinds, MakeKernel, ::testing::Values(vehicle, appell, kapitza_pendulum));
 
 TEST(MakeKernelFailure, SaysWhyARateFails) {
   const Dynamics dynamics = make_dynamics(scenes::Vehicle{});

@@ -10,7 +10,7 @@
 
 #include "carnot/flow/flow.h"
 #include "carnot/flow/monitor.h"
-#include "carnot/scenes/driven_pendulum.h"
+#include "carnot/scenes/kapitza_pendulum.h"
 #include "carnot/system/lagrangian_system.h"
 #include "testing/method_runs.h"
 #include "testing/order.h"
@@ -18,7 +18,7 @@
 namespace carnot::monitor_methods_test {
 namespace {
 
-using Pendulum = LagrangianSystem<scenes::DrivenPendulum>;
+using Pendulum = LagrangianSystem<scenes::KapitzaPendulum>;
 using Vehicle = VelocityConstraints<scenes::Vehicle>;
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -60,7 +60,7 @@ TEST_P(DrivenEnergyTest, BalanceHasTheOrderOfTheMethod) {
   constexpr double kPlateau = 1e-12;  // round-off of the steps, over terms up to 4
   constexpr double kCeiling = 1e-1;
   constexpr double kSlopeTolerance = 0.5;  // a maximum over nodes, which move with the step
-  const Pendulum system(scenes::DrivenPendulum{1, 1, 0.2, 5});
+  const Pendulum system(scenes::KapitzaPendulum{1, 1, 0.2, 5});
   static_assert(!Pendulum::kAutonomous);
   const auto start = make_state<double, 1>(Vector<double, 1>(0.7), Vector<double, 1>(0.4));
   const auto tableau = test::tableau_of(GetParam().name);
@@ -80,7 +80,7 @@ TEST_P(DrivenEnergyTest, BalanceHasTheOrderOfTheMethod) {
 
 // Without shaking both are the same, and zero up to the error of the method.
 TEST(DrivenEnergyLimitTest, WithoutShakingBothAreTheSame) {
-  const Pendulum system(scenes::DrivenPendulum{1, 1, 0, 5});
+  const Pendulum system(scenes::KapitzaPendulum{1, 1, 0, 5});
   const auto start = make_state<double, 1>(Vector<double, 1>(0.7), Vector<double, 1>(0.4));
   const auto monitor =
       monitored(system, test::tableau_of("gauss16"), StepPlan::equal(0, 2, 40), start);

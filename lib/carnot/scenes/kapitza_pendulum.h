@@ -1,4 +1,4 @@
-// A pendulum whose pivot is shaken up and down: L depends on time.
+// Kapitza's pendulum, whose pivot is shaken up and down: L depends on time.
 //
 // The pivot is at height Y(t) = amplitude cos(frequency t), theta is measured from hanging down.
 // Per unit mass, without the terms of t alone,
@@ -20,7 +20,7 @@
 
 namespace carnot::scenes {
 
-struct DrivenPendulum {
+struct KapitzaPendulum {
   static constexpr int kDof = 1;
   static constexpr int kMultipliers = 0;
   static constexpr bool kTimeDependent = true;
@@ -40,17 +40,17 @@ struct DrivenPendulum {
   }
 
   static constexpr auto parameters() {
-    using P = Parameter<DrivenPendulum>;
+    using P = Parameter<KapitzaPendulum>;
     return std::array{
-        P{"length", &DrivenPendulum::length, "length", Range::positive(), "of the pendulum"},
-        P{"gravity", &DrivenPendulum::gravity, "length/time^2", Range{}, "acceleration downwards"},
+        P{"length", &KapitzaPendulum::length, "length", Range::positive(), "of the pendulum"},
+        P{"gravity", &KapitzaPendulum::gravity, "length/time^2", Range{}, "acceleration downwards"},
         P{"amplitude",
-          &DrivenPendulum::amplitude,
+          &KapitzaPendulum::amplitude,
           "length",
           Range::non_negative(),
           "of the pivot's motion"},
         P{"frequency",
-          &DrivenPendulum::frequency,
+          &KapitzaPendulum::frequency,
           "rad/time",
           Range::non_negative(),
           "of the pivot's motion"}};
