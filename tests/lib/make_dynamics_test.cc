@@ -14,14 +14,16 @@
 #include "carnot/scenes/vehicle.h"
 #include "carnot/scenes/vehicle_cosine.h"
 #include "carnot/step/gauss.h"
+#include "carnot/system/erased_system.h"
 #include "testing/runs.h"
 
 namespace carnot::make_dynamics_test {
 namespace {
 
 using System = VelocityConstraints<scenes::VehicleCosine>;
-using Step = Gauss<System, 1>;
 constexpr int n = 4;
+// The system as the compiled kernels see it.
+using Step = Gauss<ErasedSystem<n>, 1>;
 constexpr int k = 2;
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
@@ -29,6 +31,8 @@ class MakeDynamics : public ::testing::Test {
  protected:
   const scenes::VehicleCosine scene_ = test::uneven<scenes::VehicleCosine>();
   const System system_{scene_};
+  const SystemOnBranch<System> on_branch_{system_};
+  const ErasedSystem<n> erased_{&on_branch_, functions_of<System>()};
   const Dynamics dynamics_ = make_dynamics(scene_, "midpoint");
   const State<double, n> start_ = test::vehicle_start(system_);
   const StepPlan plan_ = StepPlan::of_length(0, 1, 0.15);
@@ -42,7 +46,7 @@ TEST_F(MakeDynamics, KnowsItsSizes) {
 }
 
 TEST_F(MakeDynamics, FlowIsTheFlow) {
-  Step step(system_);
+  Step step(erased_);
   auto expected = start_;
   const FlowReport by_template = flow(step, plan_, expected);
   Vector<double, 2 * n> z = start_.value;
@@ -55,7 +59,7 @@ TEST_F(MakeDynamics, FlowIsTheFlow) {
 
 TEST_F(MakeDynamics, TangentIsRowMajor) {
   using Square = Matrix<double, 2 * n, 2 * n>;
-  Step step(system_);
+  Step step(erased_);
   auto expected = start_;
   Compensated<Square> m{Square::Identity(), Square::Zero()};
   const auto go_on = [](long, const Step&, const auto&) { return true; };

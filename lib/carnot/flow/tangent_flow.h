@@ -26,7 +26,7 @@ FlowReport tangent_flow(
   if (!tangent_ok) {
     report.status = FlowStatus::kStepFailed;
     report.last.status = StepStatus::kRateFailed;
-    report.last.rate = RateStatus::kNotFinite;
+    report.last.rate = tangent.failure();
   }
   return report;
 }

@@ -32,12 +32,15 @@ class Tangent<Rattle<System_, T_>> {
   // singular; M is then unchanged.
   [[nodiscard]] bool advance(const Step& step, Compensated<Square>& m) {
     Compensated<Square> next = m;
+    failure_ = RateStatus::kNotFinite;
     for (int i = 0; i < step.tableau().stages(); ++i) {
       if (!kick_and_move(step, i, next) || !kick_back(step, i, next)) return false;
     }
     m = next;
     return true;
   }
+  // Why the last advance() failed.
+  [[nodiscard]] RateStatus failure() const { return failure_; }
 
  private:
   static constexpr int n = Step::kDof;
@@ -47,6 +50,13 @@ class Tangent<Rattle<System_, T_>> {
 
   static Vector<T, n> configuration(const Step& step, int node) {
     return step.node(node).template head<n>();
+  }
+
+  // Notes why it is not.
+  bool sound(RateStatus status) {
+    if (status == RateStatus::kOk) return true;
+    failure_ = status;
+    return false;
   }
 
   // The second derivative of nu.h at a node.
@@ -62,12 +72,13 @@ class Tangent<Rattle<System_, T_>> {
     const auto& scene = step.system().scene();
     const T h = step.last_step() * step.tableau().b[i];
     Square a;
-    const RateStatus status = phase_jacobian(step.system(),
-                                             step.stage_time(i),
-                                             Vector<T, kSize>(step.stages().col(i)),
-                                             step.algebraic(i),
-                                             a);
-    if (status != RateStatus::kOk) return false;
+    if (!sound(phase_jacobian(step.system(),
+                              step.stage_time(i),
+                              Vector<T, kSize>(step.stages().col(i)),
+                              step.algebraic(i),
+                              a))) {
+      return false;
+    }
     const Matrix<T, l, n> dh0 = holonomic_jacobian(scene, configuration(step, i));
     const Matrix<T, l, n> dh1 = holonomic_jacobian(scene, configuration(step, i + 1));
     const Square start = m.value + m.compensation;
@@ -101,10 +112,8 @@ class Tangent<Rattle<System_, T_>> {
     Vector<T, kSize> rate;
     Square jacobian;
     const T t = step.node_time(i + 1);
-    if (phase_rate(step.system(), t, step.node(i + 1), y, rate) != RateStatus::kOk) return false;
-    if (phase_jacobian(step.system(), t, step.node(i + 1), y, jacobian) != RateStatus::kOk) {
-      return false;
-    }
+    if (!sound(phase_rate(step.system(), t, step.node(i + 1), y, rate))) return false;
+    if (!sound(phase_jacobian(step.system(), t, step.node(i + 1), y, jacobian))) return false;
     const Vector<T, n> v = rate.template head<n>();
     const Matrix<T, l, kSize> hidden = hidden_jacobian(scene, q, v, jacobian);
     const Matrix<T, l, n> dh = holonomic_jacobian(scene, q);
@@ -126,6 +135,7 @@ class Tangent<Rattle<System_, T_>> {
 
   T& at(int i, int j) { return solution_[i * kSize + j]; }
 
+  RateStatus failure_ = RateStatus::kNotFinite;
   // Scratch.
   typename Step::Midpoint::KktMatrix matrix_;
   std::array<T, kUnknowns * kSize> solution_;  // row-major

@@ -33,6 +33,7 @@ class Tangent {
     const T in_packs_before = std::exchange(packed_step_, T(0));
     const T plain_before = std::exchange(plain_step_, T(0));
     count_ = step.tableau().stages();
+    failure_ = RateStatus::kNotFinite;
     Square sum;
     if (in_packs(step, h != T(0) && in_packs_before == h, m, sum)) {
       packed_step_ = h;
@@ -51,6 +52,8 @@ class Tangent {
     m.add(sum);
     return true;
   }
+  // Why the last advance() failed.
+  [[nodiscard]] RateStatus failure() const { return failure_; }
 
  private:
   static constexpr int kMaxIterations = 60;
@@ -63,7 +66,10 @@ class Tangent {
                                                Vector<T, kSize>(step.stages().col(i)),
                                                step.algebraic(i),
                                                jacobian_[i]);
-      if (status != RateStatus::kOk) return false;
+      if (status != RateStatus::kOk) {
+        failure_ = status;
+        return false;
+      }
       const T weight = step.last_step() * step.tableau().omega[i];
       jacobian_[i] = weight * jacobian_[i];
     }
@@ -229,6 +235,7 @@ class Tangent {
   }
 
   int count_ = 0;
+  RateStatus failure_ = RateStatus::kNotFinite;
   // Lengths of the step whose increments are there, side by side or one by one; 0: none.
   T packed_step_ = T(0);
   T plain_step_ = T(0);
