@@ -46,11 +46,11 @@ const std::vector<Choice>& choices() {
 }
 
 bool moves(const Dynamics& dynamics, const PhaseStart& start, double duration) {
-  constexpr long kSteps = 40;
+  constexpr long kTrialSteps = 40;
   constexpr double kLeastWay = 0.1;
   constexpr double kFurthest = 100;
   std::vector<double> z = start.z;
-  const FlowReport report = dynamics.flow(StepPlan::equal(start.t, duration, kSteps), z);
+  const FlowReport report = dynamics.flow(StepPlan::equal(start.t, duration, kTrialSteps), z);
   if (!report.completed()) return false;
   double way = 0;
   for (std::size_t i = 0; i < z.size(); ++i) way = std::max(way, std::abs(z[i] - start.z[i]));

@@ -84,6 +84,17 @@ void Dynamics::midpoint_multipliers(std::span<const double> q,
   (void)evaluate(0, q, p, velocity, lambda);
 }
 
+BatchReport Dynamics::adaptive_batch(double start,
+                                     double duration,
+                                     double tolerance,
+                                     int count,
+                                     std::span<double> z,
+                                     int threads) const {
+  assert(has_adaptive_batch() && std::ssize(z) == 2L * dof * count);
+  return carnot::adaptive_batch(
+      *functions, system.get(), start, duration, tolerance, count, z.data(), threads);
+}
+
 BatchReport Dynamics::flow_batch(const StepPlan& plan,
                                  int count,
                                  std::span<double> z,

@@ -89,12 +89,8 @@ struct Dynamics {
                                            double tolerance,
                                            int count,
                                            std::span<double> z,
-                                           int threads = 0) const {
-    assert(has_adaptive_batch() && std::ssize(z) == 2L * dof * count);
-    return kernel.calls.adaptive_batch(
-        system.get(), kernel.method.get(), start, duration, tolerance, count, z.data(), threads);
-  }
-  [[nodiscard]] bool has_adaptive_batch() const { return kernel.calls.adaptive_batch != nullptr; }
+                                           int threads = 0) const;
+  [[nodiscard]] bool has_adaptive_batch() const { return kernel.fills_packs; }
   // The same as flow(), measured and recorded.
   [[nodiscard]] FlowSummary monitored_flow(const StepPlan& plan,
                                            std::span<double> z,

@@ -18,7 +18,8 @@ Dynamics make_inlined_dynamics(const Scene& scene,
                 "holonomic constraints: make_rattle_dynamics() of <carnot/make_rattle_dynamics.h>");
   using System = decltype(make_system(scene));
   const Method& method = method_for(scene, name);
-  Dynamics dynamics = bind(scene, method, SystemOnBranch<System>{make_system(scene)});
+  Dynamics dynamics =
+      bind(scene, method, SystemOnBranch<System>{make_system(scene)}, functions_of<System>());
   dynamics.kernel = make_inlined_kernel<System>(method, periods_of(dynamics.info));
   return dynamics;
 }

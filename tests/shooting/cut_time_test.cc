@@ -123,7 +123,7 @@ INSTANTIATE_TEST_SUITE_P(
     Sides,
     CutTimes,
     testing::Values(Ray{0.5, 0.3}, Ray{0.9, 0.5}, Ray{1.3, 0.6}, Ray{2.5, 0.5}),
-    [](const auto& info) { return "Rho" + std::to_string(std::lround(10 * info.param.rho)); });
+    [](const auto& test) { return "Rho" + std::to_string(std::lround(10 * test.param.rho)); });
 
 }  // namespace
 }  // namespace carnot::cut_time_test

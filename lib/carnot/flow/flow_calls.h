@@ -27,21 +27,14 @@ struct FlowCalls {
                                   double duration,
                                   double tolerance,
                                   double* z) = nullptr;
-  // Null where the rates do not run side by side.
-  BatchReport (*adaptive_batch)(const void* system,
-                                const void* method,
-                                double start,
-                                double duration,
-                                double tolerance,
-                                int count,
-                                double* z,
-                                int threads) = nullptr;
 };
 
 // Calls, and the `method` that they take.
 struct Kernel {
   std::shared_ptr<const void> method;
   FlowCalls calls;
+  // Its stages, and the rates of its system, run side by side and fill a pack.
+  bool fills_packs = false;
 };
 
 }  // namespace carnot

@@ -18,9 +18,7 @@ Kernel make_inlined_kernel(const Method& method, std::span<const double> periods
     using M = Direct<RungeKutta<System, kRowStages>>;
     Kernel kernel = kernel_of(M{fixed_stages<kRowStages>(tableau), winding});
     add_automatic_flow<M>(tableau, kernel);
-    if constexpr (PacksRates<System>) {
-      if (tableau.stages() == kRowStages) kernel.calls.adaptive_batch = adaptive_batch<M>;
-    }
+    kernel.fills_packs = PacksRates<System> && tableau.stages() == kRowStages;
     return kernel;
   }
   using M = Direct<RungeKutta<System>>;

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "carnot/flow/automatic_flow.h"
-#include "carnot/flow/batch.h"
 #include "carnot/flow/flow_calls.h"
 #include "carnot/flow/monitor.h"
 #include "carnot/flow/tangent_flow.h"
@@ -173,19 +172,6 @@ AutomaticFlow automatic_flow(const void* opaque,
   return result;
 }
 
-template <class M>
-BatchReport adaptive_batch(const void* opaque,
-                           const void* data,
-                           double start,
-                           double duration,
-                           double tolerance,
-                           int count,
-                           double* z,
-                           int threads) {
-  const auto& system = static_cast<const M*>(data)->system(opaque);
-  return carnot::adaptive_batch(system, start, duration, tolerance, count, z, threads);
-}
-
 // The calls of any stepper.
 template <class M>
 Kernel kernel_of(M method) {
@@ -233,9 +219,7 @@ Kernel make_erased_kernel(const Tableau<double>& tableau,
     using M = Erased<RungeKutta<System, kRowStages>>;
     kernel = kernel_of(M{fixed_stages<kRowStages>(tableau), winding_of<n>(periods), &functions});
     add_automatic_flow<M>(tableau, kernel);
-    if (functions.packs && tableau.stages() == kRowStages) {
-      kernel.calls.adaptive_batch = adaptive_batch<M>;
-    }
+    kernel.fills_packs = functions.packs && tableau.stages() == kRowStages;
     return kernel;
   }
   using M = Erased<RungeKutta<System>>;

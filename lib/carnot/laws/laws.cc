@@ -117,7 +117,9 @@ ReferenceRun reference_run(const Dynamics& accurate,
                            long most_steps) {
   constexpr double kGoal = 4 * kEps;
   constexpr long kFewestSteps = 32;
-  ReferenceRun best{start, duration};
+  ReferenceRun best;
+  best.start = start;
+  best.duration = duration;
   std::optional<std::vector<double>> coarse;
   for (long count = kFewestSteps; count <= most_steps; count *= 2) {
     const auto fine = end_of(accurate, start, duration, count);
@@ -177,11 +179,11 @@ double measure_symplecticity(const Dynamics& dynamics,
   Square p(2 * n, 2 * n);  // symmetric
   if (!dynamics.tangent_projector(start.t, start.z, span_of(p))) return kNotMeasured;
   const auto form = [n](const Square& a) {  // a'J a
-    const Square product = a.bottomRows(n).transpose() * a.topRows(n);
+    const Square product = a.bottomRows(n).transpose().lazyProduct(a.topRows(n));
     return Square(product - product.transpose());
   };
   const Eigen::Map<const Square> m(map.m.data(), 2 * n, 2 * n);
-  const double defect = (form(m * p) - form(p)).cwiseAbs().maxCoeff();
+  const double defect = (form(m.lazyProduct(p)) - form(p)).cwiseAbs().maxCoeff();
   return defect / std::max(1.0, m.squaredNorm());
 }
 

@@ -304,10 +304,6 @@ class Pack {
   typename Ops::Register part_[kParts];
 };
 
-// A width at which two registers are under way at a time, so that one works while the other waits.
-inline constexpr int kPackInFlight =
-    2 * std::max(4, pack_lane::Ops<pack_lane::Widest<8>::type>::kSize);
-
 template <class T>
 struct IsPack : std::false_type {};
 template <int W, class Lane>

@@ -15,9 +15,14 @@ namespace carnot::internal {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-MatrixXd product(const MatrixXd& a, const MatrixXd& b) { return a * b; }
+// Sums entry by entry: 0.07 to 0.9 us for 8 to 24 rows, where Eigen's product for large matrices
+// takes 0.09 to 0.6 us and the compiler another second for each. The flows beside them take 10 us
+// and more.
+MatrixXd product(const MatrixXd& a, const MatrixXd& b) { return a.lazyProduct(b); }
 
-MatrixXd transposed_product(const MatrixXd& a, const MatrixXd& b) { return a.transpose() * b; }
+MatrixXd transposed_product(const MatrixXd& a, const MatrixXd& b) {
+  return a.transpose().lazyProduct(b);
+}
 
 namespace {
 
@@ -107,7 +112,7 @@ MatrixXd basis_of(const Qr& qr) { return times_q(qr, MatrixXd::Identity(qr.rows(
 // R of A = Q R, as many rows as columns.
 MatrixXd r_of(const Qr& qr) {
   const MatrixXd triangle = qr.matrixQR().topRows(qr.cols()).triangularView<Eigen::Upper>();
-  return triangle * qr.colsPermutation().transpose();
+  return MatrixXd(triangle * qr.colsPermutation().transpose());
 }
 
 using Svd = Eigen::JacobiSVD<MatrixXd, Eigen::NoQRPreconditioner>;

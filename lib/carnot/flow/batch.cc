@@ -1,0 +1,70 @@
+#include "carnot/flow/batch.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "carnot/flow/dop853_adaptive.h"
+
+namespace carnot {
+namespace {
+
+constexpr int W = kErasedLanes;
+
+// A pack in memory.
+struct alignas(64) Row : std::array<double, W> {};
+
+// Points first, ..., first + lanes - 1 of `z`; lanes that are idle repeat the last. False, with z
+// as it was, where several fail together.
+bool advance(const SystemFunctions& functions,
+             const void* system,
+             double start,
+             double duration,
+             double tolerance,
+             int lanes,
+             double* z,
+             BatchReport& report) {
+  const int size = 2 * functions.dof;
+  std::vector<Row> memory(size + adaptive_rows(functions));
+  double* const rows = memory.front().data();
+  for (int l = 0; l < W; ++l) {
+    const double* const from = z + std::min(l, lanes - 1) * size;
+    for (int k = 0; k < size; ++k) rows[k * W + l] = from[k];
+  }
+  const AdaptiveReport run =
+      dop853_adaptive(functions, system, start, duration, tolerance, rows, rows + size * W);
+  report.evaluations += run.evaluations * lanes;
+  if (!run.completed && lanes > 1) return false;
+  for (int l = 0; l < lanes; ++l) {
+    for (int k = 0; k < size; ++k) {
+      z[l * size + k] = run.completed ? rows[k * W + l] : std::nan("");
+    }
+  }
+  (run.completed ? report.completed : report.failed) += lanes;
+  return true;
+}
+
+}  // namespace
+
+BatchReport adaptive_batch(const SystemFunctions& functions,
+                           const void* system,
+                           double start,
+                           double duration,
+                           double tolerance,
+                           int count,
+                           double* z,
+                           int threads) {
+  const auto go = [&](int first, int lanes, BatchReport& report) {
+    double* const points = z + first * 2 * functions.dof;
+    return advance(functions, system, start, duration, tolerance, lanes, points, report);
+  };
+  return batch_of((count + W - 1) / W, threads, [&](int pack, BatchReport& report) {
+    const int first = pack * W;
+    const int lanes = std::min(W, count - first);
+    if (go(first, lanes, report)) return;
+    for (int l = 0; l < lanes; ++l) (void)go(first + l, 1, report);
+  });
+}
+
+}  // namespace carnot

@@ -1,0 +1,132 @@
+#include "carnot/flow/dop853_adaptive.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "carnot/numerics/pack.h"
+#include "carnot/tableau/dop853_embedded.h"
+
+namespace carnot {
+namespace {
+
+using namespace dop853;
+
+constexpr int W = kErasedLanes;
+using P = Pack<W>;
+
+// Row k of sum_j w_j f_j, over the weights that do not vanish; each f_j has `size` rows.
+[[gnu::always_inline]] inline P weighted_row(const Weights& w, const double* f, int size, int k) {
+  P sum(0);
+  for (int j = 0; j < kStages; ++j) {
+    if (w[j] != 0) sum += P(w[j]) * P::load(f + (j * size + k) * W);
+  }
+  return sum;
+}
+
+// Row k of `to` <- row k of z + h sum_j w_j f_j.
+[[gnu::flatten, gnu::noinline]] void combine(
+    const Weights& w, const double* z, double h, const double* f, int size, double* to) {
+  for (int k = 0; k < size; ++k) {
+    const P sum = weighted_row(w, f, size, k);
+    (P::load(z + k * W) + P(h) * sum).store(to + k * W);
+  }
+}
+
+// The error of the step over the tolerance, largest of all lanes and components: with e5, e3 the
+// differences to the embedded results, h e5^2 / sqrt(e5^2 + e3^2 / 100).
+[[gnu::flatten, gnu::noinline]] double error_ratio(
+    const double* z, const double* end, double h, double tolerance, const double* f, int size) {
+  P fifth_square(0);
+  P third_square(0);
+  for (int i = 0; i < size; ++i) {
+    const P scale = P(tolerance) * (P(1) + max(abs(P::load(z + i * W)), abs(P::load(end + i * W))));
+    const P fifth_ratio = weighted_row(kError5, f, size, i) / scale;
+    const P third_ratio = weighted_row(kError3, f, size, i) / scale;
+    fifth_square += fifth_ratio * fifth_ratio;
+    third_square += third_ratio * third_ratio;
+  }
+  const P scale = sqrt(max(P(size) * (fifth_square + P(0.01) * third_square), P(1e-300)));
+  return largest(P(std::abs(h)) * fifth_square / scale);
+}
+
+}  // namespace
+
+int adaptive_rows(const SystemFunctions& functions) {
+  return (kStages + 1) * 2 * functions.dof + functions.algebraic + 1;
+}
+
+AdaptiveReport dop853_adaptive(const SystemFunctions& functions,
+                               const void* system,
+                               double start,
+                               double duration,
+                               double tolerance,
+                               double* z,
+                               double* memory) {
+  constexpr double kSafety = 0.8;
+  constexpr double kMostShrink = 0.333;
+  constexpr double kMostGrowth = 2;
+  constexpr long kMostSteps = 1L << 24;
+  static const Tableau<double> kTableau = dop853_tableau<double>();
+  const int size = 2 * functions.dof;
+  double* const f = memory;
+  double* const stage = f + kStages * size * W;
+  double* const y = stage + size * W;
+  double* const time = y + functions.algebraic * W;
+  AdaptiveReport report;
+  const auto rate = [&](double t, const double* at, int i) {
+    std::fill_n(time, W, t);
+    ++report.evaluations;
+    return functions.rates(system, time, at, y, f + i * size * W);
+  };
+  if (!rate(start, z, 0)) return report;
+
+  // A first step that moves by a hundredth of the size of z, as far as the tolerance allows.
+  double speed = 0;
+  double extent = 0;
+  for (int i = 0; i < size * W; ++i) {
+    speed = std::max(speed, std::abs(f[i]));
+    extent = std::max(extent, std::abs(z[i]));
+  }
+  double h = std::abs(duration);
+  if (speed > 0) {
+    h = std::min(h, std::pow(tolerance, 0.125) * std::max(extent, 1.0) / speed);
+  }
+  const double sign = duration < 0 ? -1 : 1;
+  double left = std::abs(duration);
+  bool after_rejection = false;
+  while (left > 0 && report.steps + report.rejected < kMostSteps) {
+    const bool last = h * 1.01 >= left;
+    const double step = sign * (last ? left : h);
+    const double t = start + duration - sign * left;
+    bool ok = true;
+    for (int i = 1; i < kStages && ok; ++i) {
+      combine(kA[i], z, step, f, size, stage);
+      ok = rate(t + kTableau.c[i] * step, stage, i);
+    }
+    double ratio = INFINITY;
+    if (ok) {
+      combine(kA[kStages], z, step, f, size, stage);
+      ratio = error_ratio(z, stage, step, tolerance, f, size);
+    }
+    const double growth =
+        std::isfinite(ratio) ? kSafety / std::pow(std::max(ratio, 1e-10), 0.125) : kMostShrink;
+    if (ratio <= 1) {
+      ++report.steps;
+      std::copy_n(stage, size * W, z);
+      left = last ? 0 : left - std::abs(step);
+      h = std::abs(step) * std::clamp(growth, kMostShrink, after_rejection ? 1.0 : kMostGrowth);
+      after_rejection = false;
+      if (left > 0 && !rate(start + duration - sign * left, z, 0)) return report;
+    } else {
+      ++report.rejected;
+      h = std::abs(step) * std::clamp(growth, kMostShrink, 1.0);
+      after_rejection = true;
+      if (h < 1e-14 * std::abs(duration)) return report;
+    }
+  }
+  report.completed = left == 0;
+  return report;
+}
+
+}  // namespace carnot
