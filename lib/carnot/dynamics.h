@@ -75,6 +75,7 @@ struct Dynamics {
     return kernel.calls.automatic_flow(
         system.get(), kernel.method.get(), start, duration, tolerance, z.data());
   }
+  // Of Gauss methods with kLeastSampled stages or more.
   [[nodiscard]] bool has_automatic_flow() const { return kernel.calls.automatic_flow != nullptr; }
   // Advances `count` phase points, one after the other in z, over the plan; on `threads` threads
   // (0: all cores). Those that fail become NaN. z has 2n `count` entries.
@@ -90,6 +91,7 @@ struct Dynamics {
                                            int count,
                                            std::span<double> z,
                                            int threads = 0) const;
+  // Of gauss16, where the rates run side by side.
   [[nodiscard]] bool has_adaptive_batch() const { return kernel.fills_packs; }
   // The same as flow(), measured and recorded.
   [[nodiscard]] FlowSummary monitored_flow(const StepPlan& plan,
@@ -134,6 +136,7 @@ struct Dynamics {
     if (dynamics.system == nullptr) return std::nullopt;
     return dynamics;
   }
+  // Whether H_y = 0 may have more than one solution y.
   [[nodiscard]] bool has_branches() const { return calls.branch != nullptr; }
 
   // With holonomic constraints only, at z = (q, p): residuals; the nearest point of the manifold,
@@ -152,6 +155,7 @@ struct Dynamics {
     assert(has_holonomic() && std::ssize(z) == 2 * dof && std::ssize(projector) == 4 * dof * dof);
     return calls.tangent_projector(system.get(), t, z.data(), projector.data());
   }
+  // Whether there are holonomic constraints.
   [[nodiscard]] bool has_holonomic() const { return calls.holonomic_residuals != nullptr; }
 
   // Whether there is a direct midpoint transcription; k stands for `transcribed` in what follows.

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <numeric>
+#include <vector>
 
 #include "carnot/numerics/lu.h"
 
@@ -26,6 +28,8 @@ MatrixXd transposed_product(const MatrixXd& a, const MatrixXd& b) {
 
 namespace {
 
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
 // Row by row, as eliminate() takes them.
 template <class M>
 using Rows = Eigen::Matrix<double,
@@ -40,7 +44,7 @@ template <class M>
 Rows<M> eliminate(Rows<M> a, Rows<M> b) {
   const int size = static_cast<int>(a.rows());
   if (!carnot::lu_solve(size, a.data(), static_cast<int>(b.cols()), b.data())) {
-    b.setConstant(std::numeric_limits<double>::quiet_NaN());
+    b.setConstant(kNan);
   }
   return b;
 }
@@ -143,11 +147,43 @@ std::optional<VectorXd> kernel_line(const MatrixXd& rows, double full_rank) {
   return VectorXd(times_q(qr, VectorXd::Unit(size, size - 1)));
 }
 
-// The eigenvalues of A + c, with c = |A|, are positive: they are its singular values.
+// Jacobi's method, row by row: small eigenvalues keep their digits beside large ones. Some ten
+// sweeps; ends where the entries beside the diagonal are round-off of those on it.
 SymmetricEigen symmetric_eigen(const MatrixXd& a) {
-  const double shift = a.norm();
-  const RightSingular shifted = right_singular(a + shift * MatrixXd::Identity(a.rows(), a.rows()));
-  return {shifted.values.reverse().array() - shift, shifted.vectors.rowwise().reverse()};
+  constexpr double kEps = std::numeric_limits<double>::epsilon();
+  constexpr int kMostSweeps = 60;
+  const Eigen::Index n = a.rows();
+  if (!a.allFinite()) return {VectorXd::Constant(n, kNan), MatrixXd::Constant(n, n, kNan)};
+  MatrixXd rest = a;
+  MatrixXd vectors = MatrixXd::Identity(n, n);
+  const double nothing = kEps * kEps * a.norm();
+  bool rotated = true;
+  for (int sweep = 0; rotated && sweep < kMostSweeps; ++sweep) {
+    rotated = false;
+    for (Eigen::Index p = 0; p < n; ++p) {
+      for (Eigen::Index q = p + 1; q < n; ++q) {
+        const double size = std::sqrt(std::abs(rest(p, p) * rest(q, q)));
+        if (std::abs(rest(p, q)) <= std::max(kEps * size, nothing)) continue;
+        Eigen::JacobiRotation<double> rotation;
+        if (!rotation.makeJacobi(rest, p, q)) continue;
+        rotated = true;
+        rest.applyOnTheLeft(p, q, rotation.adjoint());
+        rest.applyOnTheRight(p, q, rotation);
+        vectors.applyOnTheRight(p, q, rotation);
+      }
+    }
+  }
+  std::vector<Eigen::Index> order(n);
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](Eigen::Index i, Eigen::Index j) {
+    return rest(i, i) < rest(j, j);
+  });
+  SymmetricEigen eigen{VectorXd(n), MatrixXd(n, n)};
+  for (Eigen::Index i = 0; i < n; ++i) {
+    eigen.values[i] = rest(order[i], order[i]);
+    eigen.vectors.col(i) = vectors.col(order[i]);
+  }
+  return eigen;
 }
 
 VectorXd singular_values(const MatrixXd& a) {
@@ -156,7 +192,6 @@ VectorXd singular_values(const MatrixXd& a) {
 
 RightSingular right_singular(const MatrixXd& a) {
   if (!a.allFinite()) {
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     return {VectorXd::Constant(a.cols(), kNan), MatrixXd::Constant(a.cols(), a.cols(), kNan)};
   }
   const Svd svd(squared(a), Eigen::ComputeFullV);
