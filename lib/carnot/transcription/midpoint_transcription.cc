@@ -1,5 +1,8 @@
 #include "carnot/transcription/midpoint_transcription.h"
 
+#include <algorithm>
+#include <array>
+#include <cassert>
 #include <cmath>
 #include <vector>
 
@@ -8,25 +11,59 @@
 namespace carnot {
 namespace {
 
-// Numbers with their derivatives: one row of `width` doubles each, the value first.
+// Numbers with their derivatives: a row of `known` doubles each, the value first. The compiler is
+// to know the length: where it did not, searches of trailers took 1.3 times as long.
+template <int known>
 class Rows {
  public:
-  Rows(double* data, int width) : data_(data), width_(width) {}
+  explicit Rows(double* data) : data_(data) {}
 
   // Row i.
-  double* operator[](int i) const { return data_ + i * width_; }
-  [[nodiscard]] int width() const { return width_; }
+  double* operator[](int i) const { return data_ + i * length(); }
+  [[nodiscard]] static constexpr int length() { return known; }
+
+  void clear(double* row) const {
+    for (int d = 0; d < length(); ++d) row[d] = 0;
+  }
+  // sum += a x, and sum += a x y, with derivatives. The rows are different ones.
+  void add(double a, const double* __restrict x, double* __restrict sum) const {
+    for (int d = 0; d < length(); ++d) sum[d] += a * x[d];
+  }
+  void add_product(double a, const double* x, const double* y, double* __restrict sum) const {
+    const double by_x = a * y[0];
+    const double by_y = a * x[0];
+    for (int d = 0; d < length(); ++d) sum[d] += by_x * x[d] + by_y * (y[d] * kSlopes[d]);
+  }
+  // x /= y.
+  void divide(double* __restrict x, const double* __restrict y) const {
+    const double inverse = 1 / y[0];
+    const double ratio = x[0] * inverse;
+    for (int d = 0; d < length(); ++d) x[d] = (x[d] - ratio * (y[d] * kSlopes[d])) * inverse;
+  }
+  void take_root(double* x) const {
+    const double factor = 0.5 / std::sqrt(x[0]);
+    for (int d = 0; d < length(); ++d) x[d] = factor * (x[d] + x[d] * (1 - kSlopes[d]));
+  }
 
  private:
+  // Leaves the value out. Rows are written as a whole: where one number of a row is written alone,
+  // the processor waits before it can load the row again.
+  static constexpr auto kSlopes = [] {
+    std::array<double, known> factors;
+    factors.fill(1);
+    factors[0] = 0;
+    return factors;
+  }();
+
   double* data_;
-  int width_;
 };
 
 // M, G and V of a scene at a point.
+template <int known>
 struct Entries {
   int n;
   int k;
-  Rows rows;
+  Rows<known> rows;
 
   // M_ij for j <= i, G_ij and V.
   [[nodiscard]] double* mass(int i, int j) const { return rows[i * (i + 1) / 2 + j]; }
@@ -41,103 +78,89 @@ double* scratch(int count) {
   return memory.data();
 }
 
-Entries entries_at(const TranscriptionFunctions& functions,
-                   const void* system,
-                   const double* q,
-                   bool slopes,
-                   double* memory) {
-  const int n = functions.dof;
-  functions.entries(system, q, slopes, memory);
-  return {n, functions.constraints, Rows(memory, slopes ? n + 1 : 1)};
-}
-
-// Adds a x, and a (x y) with derivatives, to `sum`.
-void add(double a, const double* x, int width, double* sum) {
-  for (int d = 0; d < width; ++d) sum[d] += a * x[d];
-}
-void add_product(double a, const double* x, const double* y, int width, double* sum) {
-  sum[0] += a * x[0] * y[0];
-  for (int d = 1; d < width; ++d) sum[d] += a * (x[d] * y[0] + x[0] * y[d]);
+// The entries with slopes, or without: length 1.
+template <int known>
+Entries<known> entries_at(const TranscriptionFunctions& functions,
+                          const void* system,
+                          const double* q,
+                          double* memory) {
+  functions.entries(system, q, known > 1, memory);
+  return {functions.dof, functions.constraints, Rows<known>(memory)};
 }
 
 // M := M + gamma G'G with gamma = trace M / trace G'G. `work` has three rows.
-void regularise(const Entries& e, const Rows& work) {
-  const int width = e.rows.width();
-  double* const mass_trace = work[0];
-  double* const square_trace = work[1];
-  double* const square = work[2];
-  for (int d = 0; d < 2 * width; ++d) mass_trace[d] = 0;  // and square_trace
-  for (int i = 0; i < e.n; ++i) add(1, e.mass(i, i), width, mass_trace);
+template <int known>
+void regularise(const Entries<known>& e, double* work) {
+  const Rows<known>& rows = e.rows;
+  double* const gamma = work;
+  double* const trace = work + rows.length();
+  double* const square = trace + rows.length();
+  rows.clear(gamma);
+  rows.clear(trace);
+  for (int i = 0; i < e.n; ++i) rows.add(1, e.mass(i, i), gamma);
   for (int i = 0; i < e.k; ++i) {
     for (int j = 0; j < e.n; ++j) {
-      add_product(1, e.constraint(i, j), e.constraint(i, j), width, square_trace);
+      rows.add_product(1, e.constraint(i, j), e.constraint(i, j), trace);
     }
   }
-  double* const gamma = mass_trace;
-  const double inverse = 1 / square_trace[0];
-  gamma[0] *= inverse;
-  for (int d = 1; d < width; ++d) gamma[d] = (gamma[d] - gamma[0] * square_trace[d]) * inverse;
+  rows.divide(gamma, trace);
   for (int i = 0; i < e.n; ++i) {
     for (int j = 0; j <= i; ++j) {
-      for (int d = 0; d < width; ++d) square[d] = 0;
+      rows.clear(square);
       for (int l = 0; l < e.k; ++l) {
-        add_product(1, e.constraint(l, i), e.constraint(l, j), width, square);
+        rows.add_product(1, e.constraint(l, i), e.constraint(l, j), square);
       }
-      add_product(1, gamma, square, width, e.mass(i, j));
+      rows.add_product(1, gamma, square, e.mass(i, j));
     }
   }
 }
 
-// M := C, the lower triangle with C C' = M, by Cholesky's method; differentiated line by line.
+// M := C, the lower triangle with C C' = M, by Cholesky's method, differentiated line by line.
 // False where M is not positive definite to round-off.
-bool factor(const Entries& e) {
-  const int width = e.rows.width();
-  const double threshold = pivot_round_off<double>(e.n);
+template <int known>
+bool factor(const Entries<known>& e) {
+  const Rows<known>& rows = e.rows;
+  // A pivot must exceed the round-off that its own row can produce.
+  const double threshold = 16 * e.n * std::numeric_limits<double>::epsilon();
   for (int j = 0; j < e.n; ++j) {
     double* const pivot = e.mass(j, j);
     const double diagonal = pivot[0];
-    for (int l = 0; l < j; ++l) add_product(-1, e.mass(j, l), e.mass(j, l), width, pivot);
+    for (int l = 0; l < j; ++l) rows.add_product(-1, e.mass(j, l), e.mass(j, l), pivot);
     if (!(pivot[0] > threshold * diagonal) || !(pivot[0] > 0)) return false;
-    pivot[0] = std::sqrt(pivot[0]);
-    const double inverse = 1 / pivot[0];
-    for (int d = 1; d < width; ++d) pivot[d] *= 0.5 * inverse;
+    rows.take_root(pivot);
     for (int i = j + 1; i < e.n; ++i) {
       double* const entry = e.mass(i, j);
-      for (int l = 0; l < j; ++l) add_product(-1, e.mass(i, l), e.mass(j, l), width, entry);
-      entry[0] *= inverse;
-      for (int d = 1; d < width; ++d) entry[d] = (entry[d] - entry[0] * pivot[d]) * inverse;
+      for (int l = 0; l < j; ++l) rows.add_product(-1, e.mass(i, l), e.mass(j, l), entry);
+      rows.divide(entry, pivot);
     }
   }
   return true;
 }
 
-}  // namespace
-
-bool midpoint_terms(const TranscriptionFunctions& functions,
-                    const void* system,
-                    const double* qm,
-                    const double* v,
-                    double* terms,
-                    double* jacobian) {
+template <int known>
+bool terms_of(const TranscriptionFunctions& functions,
+              const void* system,
+              const double* qm,
+              const double* v,
+              double* terms,
+              double* jacobian) {
   const int n = functions.dof;
   const int k = functions.constraints;
   const int count = entry_count(functions);
-  const bool slopes = jacobian != nullptr;
-  const int width = slopes ? n + 1 : 1;
-  double* const memory = scratch((count + 3) * width);
-  const Entries e = entries_at(functions, system, qm, slopes, memory);
-  if (k > 0) regularise(e, Rows(memory + count * width, width));
+  double* const memory = scratch((count + 3) * known);
+  const auto e = entries_at<known>(functions, system, qm, memory);
+  if (k > 0) regularise(e, memory + count * known);
   if (!factor(e)) return false;
-  for (int d = 0; slopes && d < (n + k + 1) * 2 * n; ++d) jacobian[d] = 0;
-  // Adds a_j v_j to term `to`.
+  for (int i = 0; i < n + k; ++i) terms[i] = 0;
+  if (jacobian != nullptr) std::fill_n(jacobian, (n + k + 1) * 2 * n, 0.0);
+  // Adds a v_j to term `to`.
   const auto add_velocity = [&](const double* a, int j, int to) {
     terms[to] += a[0] * v[j];
-    if (!slopes) return;
+    if (jacobian == nullptr) return;
     double* const by_q = jacobian + to * 2 * n;
-    add(v[j], a + 1, n, by_q);
+    for (int d = 0; d < n; ++d) by_q[d] += v[j] * a[1 + d];
     by_q[n + j] = a[0];
   };
-  for (int i = 0; i < n + k; ++i) terms[i] = 0;
   for (int i = 0; i < n; ++i) {
     for (int j = i; j < n; ++j) add_velocity(e.mass(j, i), j, i);
   }
@@ -145,8 +168,13 @@ bool midpoint_terms(const TranscriptionFunctions& functions,
     for (int j = 0; j < n; ++j) add_velocity(e.constraint(i, j), j, n + i);
   }
   terms[n + k] = e.potential()[0];
-  if (slopes) add(1, e.potential() + 1, n, jacobian + (n + k) * 2 * n);
+  if (jacobian != nullptr) std::copy_n(e.potential() + 1, n, jacobian + (n + k) * 2 * n);
   return true;
+}
+
+// sum += a x for n numbers.
+void add(double a, const double* x, int n, double* sum) {
+  for (int d = 0; d < n; ++d) sum[d] += a * x[d];
 }
 
 // With the first derivatives of l(q, v) at fixed lambda,
@@ -161,24 +189,24 @@ bool midpoint_terms(const TranscriptionFunctions& functions,
 //              in (q1, q1)  h l_qq/4 + (l_vq + l_vq')/2 + l_vv/h
 //              in (q0, q1)  h l_qq/4 + (l_vq' - l_vq)/2 - l_vv/h
 //              in (lambda, q0) and (lambda, q1)   -h g_q/2 +- G,     in (lambda, lambda)  -h P
-void discrete_lagrangian(const TranscriptionFunctions& functions,
-                         const void* system,
-                         double h,
-                         const double* x,
-                         double* gradient,
-                         double* hessian) {
+template <int known>
+void derivatives_of(const TranscriptionFunctions& functions,
+                    const void* system,
+                    double h,
+                    const double* x,
+                    double* gradient,
+                    double* hessian) {
   const int n = functions.dof;
   const int k = functions.constraints;
   const int m = 2 * n + k;
   const int count = entry_count(functions);
-  const int width = n + 1;
-  double* next = scratch(count * width + 4 * n + k + (2 * n + k) * n);
+  double* next = scratch(count * known + 4 * n + k + (2 * n + k) * n);
   const auto take = [&](int size) {
     double* const taken = next;
     next += size;
     return taken;
   };
-  double* const memory = take(count * width);
+  double* const memory = take(count * known);
   double* const qm = take(n);
   double* const v = take(n);
   double* const l_q = take(n);
@@ -195,7 +223,7 @@ void discrete_lagrangian(const TranscriptionFunctions& functions,
   // With a gauge g = G (v - lambda) + lambda.
   const auto w = [&](int j) { return functions.gauge ? v[j] - 0.5 * lambda[j] : v[j]; };
   const auto u = [&](int j) { return functions.gauge ? v[j] - lambda[j] : v[j]; };
-  const Entries e = entries_at(functions, system, qm, true, memory);
+  const auto e = entries_at<known>(functions, system, qm, memory);
   for (int i = 0; i < n; ++i) l_q[i] = -e.potential()[1 + i];
   for (int i = 0; i < n; ++i) l_v[i] = 0;
   for (int i = 0; i < n * n; ++i) l_vq[i] = 0;
@@ -258,12 +286,51 @@ void discrete_lagrangian(const TranscriptionFunctions& functions,
   }
 }
 
+// run(std::integral_constant of the length of rows for n coordinates).
+template <class Run>
+auto with_rows(int n, const Run& run) {
+  switch (row_length(n)) {
+    case 8:
+      return run(std::integral_constant<int, 8>{});
+    case 16:
+      return run(std::integral_constant<int, 16>{});
+    default:
+      assert(row_length(n) == kLongestRow);
+      return run(std::integral_constant<int, kLongestRow>{});
+  }
+}
+
+}  // namespace
+
+bool midpoint_terms(const TranscriptionFunctions& functions,
+                    const void* system,
+                    const double* qm,
+                    const double* v,
+                    double* terms,
+                    double* jacobian) {
+  if (jacobian == nullptr) return terms_of<1>(functions, system, qm, v, terms, nullptr);
+  return with_rows(functions.dof, [&](auto length) {
+    return terms_of<length()>(functions, system, qm, v, terms, jacobian);
+  });
+}
+
+void discrete_lagrangian(const TranscriptionFunctions& functions,
+                         const void* system,
+                         double h,
+                         const double* x,
+                         double* gradient,
+                         double* hessian) {
+  with_rows(functions.dof, [&](auto length) {
+    derivatives_of<length()>(functions, system, h, x, gradient, hessian);
+  });
+}
+
 void gauged_multipliers(const TranscriptionFunctions& functions,
                         const void* system,
                         const double* q,
                         const double* p,
                         double* lambda) {
-  const Entries e = entries_at(functions, system, q, false, scratch(entry_count(functions)));
+  const auto e = entries_at<1>(functions, system, q, scratch(entry_count(functions)));
   for (int i = 0; i < e.k; ++i) {
     lambda[i] = 0;
     for (int j = 0; j < e.n; ++j) lambda[i] -= e.constraint(i, j)[0] * p[j];

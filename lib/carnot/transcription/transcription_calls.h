@@ -43,10 +43,12 @@ template <class Scene, class T>
 void write_entries(const VelocityConstraints<Scene>& system,
                    const Vector<T, Scene::kDof>& q,
                    double* out) {
+  static_assert(Scene::kDof < kLongestRow);
   const auto write = [&](const T& x) {
     *out++ = value_of(x);
     if constexpr (kIsJet<T>) {
       for (int d = 0; d < Scene::kDof; ++d) *out++ = x.v[d];
+      for (int d = Scene::kDof + 1; d < row_length(Scene::kDof); ++d) *out++ = 0;
     }
   };
   const Matrix<T, Scene::kDof, Scene::kDof> mass = system.scene().mass(q);

@@ -11,7 +11,8 @@ struct TranscriptionFunctions {
   bool gauge = false;
 
   // The entries of M at or below its diagonal, row by row, then those of G, row by row, then V: all
-  // at q. With slopes each of them is followed by its n derivatives by q.
+  // at q. With slopes each of them is the first number of a row of row_length(n), its n derivatives
+  // by q are the next ones, and zeros fill the row.
   void (*entries)(const void* system, const double* q, bool slopes, double* out);
   // The second derivatives by q, n x n, of l = v'M v/2 - V - lambda'G v - lambda'P lambda/2, where
   // P is zero without a gauge.
@@ -23,5 +24,10 @@ struct TranscriptionFunctions {
 inline int entry_count(const TranscriptionFunctions& f) {
   return f.dof * (f.dof + 1) / 2 + f.constraints * f.dof + 1;
 }
+
+// The length of a row that holds a value and its n derivatives: one of a few, whole packs all, that
+// the compiler knows.
+inline constexpr int kLongestRow = 64;
+constexpr int row_length(int n) { return n < 8 ? 8 : n < 16 ? 16 : kLongestRow; }
 
 }  // namespace carnot
