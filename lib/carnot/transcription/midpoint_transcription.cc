@@ -172,11 +172,6 @@ bool terms_of(const TranscriptionFunctions& functions,
   return true;
 }
 
-// sum += a x for n numbers.
-void add(double a, const double* x, int n, double* sum) {
-  for (int d = 0; d < n; ++d) sum[d] += a * x[d];
-}
-
 // With the first derivatives of l(q, v) at fixed lambda,
 //
 //   l_q = v'M_q v/2 - V_q - lambda'G_q w,   l_v = M v - G'lambda,   g = G v + P lambda,
@@ -200,21 +195,20 @@ void derivatives_of(const TranscriptionFunctions& functions,
   const int k = functions.constraints;
   const int m = 2 * n + k;
   const int count = entry_count(functions);
-  double* next = scratch(count * known + 4 * n + k + (2 * n + k) * n);
+  double* next = scratch((count + 1 + n + k) * known + 2 * n + n * n);
   const auto take = [&](int size) {
     double* const taken = next;
     next += size;
     return taken;
   };
   double* const memory = take(count * known);
+  // l, l_v and g, each number in a row with its derivatives by q.
+  const Rows<known> l(take(known));
+  const Rows<known> momentum(take(n * known));
+  const Rows<known> g(take(k * known));
   double* const qm = take(n);
   double* const v = take(n);
-  double* const l_q = take(n);
-  double* const l_v = take(n);
-  double* const g = take(k);
   double* const l_qq = take(n * n);
-  double* const l_vq = take(n * n);
-  double* const g_q = take(k * n);
   const double* const lambda = x + 2 * n;
   for (int i = 0; i < n; ++i) {
     qm[i] = 0.5 * (x[i] + x[n + i]);
@@ -224,37 +218,35 @@ void derivatives_of(const TranscriptionFunctions& functions,
   const auto w = [&](int j) { return functions.gauge ? v[j] - 0.5 * lambda[j] : v[j]; };
   const auto u = [&](int j) { return functions.gauge ? v[j] - lambda[j] : v[j]; };
   const auto e = entries_at<known>(functions, system, qm, memory);
-  for (int i = 0; i < n; ++i) l_q[i] = -e.potential()[1 + i];
-  for (int i = 0; i < n; ++i) l_v[i] = 0;
-  for (int i = 0; i < n * n; ++i) l_vq[i] = 0;
+  l.clear(l[0]);
+  l.add(-1, e.potential(), l[0]);
+  for (int i = 0; i < n; ++i) momentum.clear(momentum[i]);
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j <= i; ++j) {
       const double* const entry = e.mass(i, j);
-      add((j < i ? 1 : 0.5) * v[i] * v[j], entry + 1, n, l_q);
-      l_v[i] += entry[0] * v[j];
-      add(v[j], entry + 1, n, l_vq + i * n);
-      if (j == i) continue;
-      l_v[j] += entry[0] * v[i];
-      add(v[i], entry + 1, n, l_vq + j * n);
+      l.add((j < i ? 1 : 0.5) * v[i] * v[j], entry, l[0]);
+      momentum.add(v[j], entry, momentum[i]);
+      if (j < i) momentum.add(v[i], entry, momentum[j]);
     }
   }
   for (int i = 0; i < k; ++i) {
-    g[i] = functions.gauge ? lambda[i] : 0;
-    for (int d = 0; d < n; ++d) g_q[i * n + d] = 0;
+    g.clear(g[i]);
+    if (functions.gauge) g[i][0] = lambda[i];
     for (int j = 0; j < n; ++j) {
       const double* const entry = e.constraint(i, j);
-      add(-lambda[i] * w(j), entry + 1, n, l_q);
-      l_v[j] -= lambda[i] * entry[0];
-      add(-lambda[i], entry + 1, n, l_vq + j * n);
-      g[i] += entry[0] * u(j);
-      add(u(j), entry + 1, n, g_q + i * n);
+      l.add(-lambda[i] * w(j), entry, l[0]);
+      momentum.add(-lambda[i], entry, momentum[j]);
+      g.add(u(j), entry, g[i]);
     }
   }
+  const double* const l_q = l[0] + 1;
+  const auto l_v = [&](int i) { return momentum[i][0]; };
+  const auto l_vq = [&](int i, int j) { return momentum[i][1 + j]; };
   for (int i = 0; i < n; ++i) {
-    gradient[i] = 0.5 * h * l_q[i] - l_v[i];
-    gradient[n + i] = 0.5 * h * l_q[i] + l_v[i];
+    gradient[i] = 0.5 * h * l_q[i] - l_v(i);
+    gradient[n + i] = 0.5 * h * l_q[i] + l_v(i);
   }
-  for (int i = 0; i < k; ++i) gradient[2 * n + i] = -h * g[i];
+  for (int i = 0; i < k; ++i) gradient[2 * n + i] = -h * g[i][0];
   if (hessian == nullptr) return;
   functions.hessian(system, qm, v, lambda, l_qq);
   // Entry (row, column) and its mirror image.
@@ -265,8 +257,8 @@ void derivatives_of(const TranscriptionFunctions& functions,
     for (int j = 0; j < n; ++j) {
       const double position = 0.25 * h * l_qq[i * n + j];
       const double velocity = (j <= i ? e.mass(i, j) : e.mass(j, i))[0] / h;
-      const double symmetric = 0.5 * (l_vq[i * n + j] + l_vq[j * n + i]);
-      const double skew = 0.5 * (l_vq[j * n + i] - l_vq[i * n + j]);
+      const double symmetric = 0.5 * (l_vq(i, j) + l_vq(j, i));
+      const double skew = 0.5 * (l_vq(j, i) - l_vq(i, j));
       hessian[j * m + i] = position - symmetric + velocity;
       hessian[(n + j) * m + n + i] = position + symmetric + velocity;
       set(i, n + j, position + skew - velocity);
@@ -274,7 +266,7 @@ void derivatives_of(const TranscriptionFunctions& functions,
   }
   for (int i = 0; i < k; ++i) {
     for (int j = 0; j < n; ++j) {
-      const double position = 0.5 * h * g_q[i * n + j];
+      const double position = 0.5 * h * g[i][1 + j];
       const double velocity = e.constraint(i, j)[0];
       set(2 * n + i, j, velocity - position);
       set(2 * n + i, n + j, -velocity - position);
