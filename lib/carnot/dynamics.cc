@@ -91,8 +91,8 @@ BatchReport Dynamics::adaptive_batch(double start,
                                      std::span<double> z,
                                      int threads) const {
   assert(has_adaptive_batch() && std::ssize(z) == 2L * dof * count);
-  return carnot::adaptive_batch(
-      *functions, system.get(), start, duration, tolerance, count, z.data(), threads);
+  const AdaptiveFlow flow{*functions, system.get(), start, duration, tolerance};
+  return carnot::adaptive_batch(flow, count, z.data(), threads);
 }
 
 BatchReport Dynamics::flow_batch(const StepPlan& plan,

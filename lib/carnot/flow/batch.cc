@@ -5,8 +5,6 @@
 #include <cmath>
 #include <vector>
 
-#include "carnot/flow/dop853_adaptive.h"
-
 namespace carnot {
 namespace {
 
@@ -15,25 +13,17 @@ constexpr int W = kErasedLanes;
 // A pack in memory.
 struct alignas(64) Row : std::array<double, W> {};
 
-// Points first, ..., first + lanes - 1 of `z`; lanes that are idle repeat the last. False, with z
-// as it was, where several fail together.
-bool advance(const SystemFunctions& functions,
-             const void* system,
-             double start,
-             double duration,
-             double tolerance,
-             int lanes,
-             double* z,
-             BatchReport& report) {
-  const int size = 2 * functions.dof;
-  std::vector<Row> memory(size + adaptive_rows(functions));
+// The first points of `z`, one for each of `lanes`; lanes that are idle repeat the last. False,
+// with z as it was, where several fail together.
+bool advance(const AdaptiveFlow& flow, int lanes, double* z, BatchReport& report) {
+  const int size = 2 * flow.functions.dof;
+  std::vector<Row> memory(size + adaptive_rows(flow.functions));
   double* const rows = memory.front().data();
   for (int l = 0; l < W; ++l) {
     const double* const from = z + std::min(l, lanes - 1) * size;
     for (int k = 0; k < size; ++k) rows[k * W + l] = from[k];
   }
-  const AdaptiveReport run =
-      dop853_adaptive(functions, system, start, duration, tolerance, rows, rows + size * W);
+  const AdaptiveReport run = dop853_adaptive(flow, rows, rows + size * W);
   report.evaluations += run.evaluations * lanes;
   if (!run.completed && lanes > 1) return false;
   for (int l = 0; l < lanes; ++l) {
@@ -47,17 +37,9 @@ bool advance(const SystemFunctions& functions,
 
 }  // namespace
 
-BatchReport adaptive_batch(const SystemFunctions& functions,
-                           const void* system,
-                           double start,
-                           double duration,
-                           double tolerance,
-                           int count,
-                           double* z,
-                           int threads) {
+BatchReport adaptive_batch(const AdaptiveFlow& flow, int count, double* z, int threads) {
   const auto go = [&](int first, int lanes, BatchReport& report) {
-    double* const points = z + first * 2 * functions.dof;
-    return advance(functions, system, start, duration, tolerance, lanes, points, report);
+    return advance(flow, lanes, z + first * 2 * flow.functions.dof, report);
   };
   return batch_of((count + W - 1) / W, threads, [&](int pack, BatchReport& report) {
     const int first = pack * W;

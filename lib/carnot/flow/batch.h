@@ -6,9 +6,9 @@
 
 #include <atomic>
 
+#include "carnot/flow/dop853_adaptive.h"
 #include "carnot/flow/reports.h"
 #include "carnot/numerics/parallel.h"
-#include "carnot/system/system_functions.h"
 
 namespace carnot {
 
@@ -28,16 +28,9 @@ BatchReport batch_of(int count, int threads, const Work& work) {
   return {completed, failed, evaluations};
 }
 
-// Advances `count` phase points, rows of 2n numbers in `z`, by `duration` with DOP853 and common
-// steps for each pack; error of about `tolerance` each, not symplectic. A pack that fails is tried
-// again one by one. Cost: a fifth to a seventh of a trajectory alone, each. threads = 0: all cores.
-BatchReport adaptive_batch(const SystemFunctions& functions,
-                           const void* system,
-                           double start,
-                           double duration,
-                           double tolerance,
-                           int count,
-                           double* z,
-                           int threads);
+// Advances `count` phase points, rows of 2n numbers in `z`, with DOP853 and common steps for each
+// pack; not symplectic. A pack that fails is tried again one by one. Cost: a fifth to a seventh of
+// a trajectory alone, each. threads = 0: all cores.
+BatchReport adaptive_batch(const AdaptiveFlow& flow, int count, double* z, int threads);
 
 }  // namespace carnot

@@ -56,13 +56,8 @@ int adaptive_rows(const SystemFunctions& functions) {
   return (kStages + 1) * 2 * functions.dof + functions.algebraic + 1;
 }
 
-AdaptiveReport dop853_adaptive(const SystemFunctions& functions,
-                               const void* system,
-                               double start,
-                               double duration,
-                               double tolerance,
-                               double* z,
-                               double* memory) {
+AdaptiveReport dop853_adaptive(const AdaptiveFlow& flow, double* z, double* memory) {
+  const auto& [functions, system, start, duration, tolerance] = flow;
   constexpr double kSafety = 0.8;
   constexpr double kMostShrink = 0.333;
   constexpr double kMostGrowth = 2;
@@ -77,7 +72,7 @@ AdaptiveReport dop853_adaptive(const SystemFunctions& functions,
   const auto rate = [&](double t, const double* at, int i) {
     std::fill_n(time, W, t);
     ++report.evaluations;
-    return functions.rates(system, time, at, y, f + i * size * W);
+    return flow.functions.rates(flow.system, time, at, y, f + i * size * W);
   };
   if (!rate(start, z, 0)) return report;
 

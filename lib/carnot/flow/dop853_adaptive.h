@@ -13,6 +13,16 @@
 
 namespace carnot {
 
+// Motions of a system over `duration`, with local errors of about `tolerance`, absolute below size
+// 1 and relative above. Refers to the system and its functions.
+struct AdaptiveFlow {
+  const SystemFunctions& functions;
+  const void* system;
+  double start;
+  double duration;
+  double tolerance;
+};
+
 struct AdaptiveReport {
   bool completed = false;
   long steps = 0;
@@ -20,16 +30,9 @@ struct AdaptiveReport {
   long evaluations = 0;  // per lane
 };
 
-// Advances kErasedLanes phase points, in rows of as many numbers, by `duration`, with local errors
-// of about `tolerance`, absolute below size 1 and relative above. On failure z is where the last
+// Advances kErasedLanes phase points, in rows of as many numbers. On failure z is where the last
 // good step left it. `memory` is room for adaptive_rows() more rows.
-AdaptiveReport dop853_adaptive(const SystemFunctions& functions,
-                               const void* system,
-                               double start,
-                               double duration,
-                               double tolerance,
-                               double* z,
-                               double* memory);
+AdaptiveReport dop853_adaptive(const AdaptiveFlow& flow, double* z, double* memory);
 int adaptive_rows(const SystemFunctions& functions);
 
 }  // namespace carnot
