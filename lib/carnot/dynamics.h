@@ -47,10 +47,10 @@ struct Dynamics {
   int order = 0;
   bool symplectic = true;
   SceneInfo info;
-  std::shared_ptr<const void> system;          // what the calls take, and the kernel's, too
-  const SystemFunctions* functions = nullptr;  // of the system,
-  const TranscriptionFunctions* transcription =
-      nullptr;    // and of its transcription, if there is one
+  std::shared_ptr<const void> system;  // what the calls take, and the kernel's, too
+  const SystemFunctions* functions = nullptr;
+  // Null where there is no midpoint transcription.
+  const TranscriptionFunctions* transcription = nullptr;
   Kernel kernel;  // the method
 
   // Advances z in place; on failure z is that of time_reached. No allocation.

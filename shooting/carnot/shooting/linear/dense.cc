@@ -76,7 +76,7 @@ std::optional<MatrixXd> inverse_if_regular(const MatrixXd& a, double threshold) 
   Eigen::FullPivLU<MatrixXd> lu(a);
   lu.setThreshold(threshold);
   if (!lu.isInvertible()) return std::nullopt;
-  return lu_inverse(a);
+  return lu_inverse(a);  // not lu.inverse(), whose triangles take the compiler longer
 }
 
 Determinant determinant_of(const MatrixXd& a) {
