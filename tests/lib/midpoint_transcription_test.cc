@@ -244,5 +244,85 @@ TYPED_TEST(MidpointTest, MidpointRuleIsTheDiscreteLegendreTransform) {
   }
 }
 
+// Rows of every length, by a Lagrangian of n separate coordinates and one constraint:
+// M = diag(2 + sin q_i), G = (cos q_j), V = |q|^2/2.
+template <int n>
+struct Separate {
+  static void entries(const void* /*system*/, const double* q, bool slopes, double* out) {
+    const auto write = [&](double value, int direction, double slope) {
+      out[0] = value;
+      if (slopes) {
+        std::fill_n(out + 1, row_length(n) - 1, 0.0);
+        if (direction >= 0) out[1 + direction] = slope;
+      }
+      out += slopes ? row_length(n) : 1;
+    };
+    double potential = 0;
+    for (int i = 0; i < n; ++i) {
+      potential += q[i] * q[i] / 2;
+      for (int j = 0; j < i; ++j) write(0, -1, 0);
+      write(2 + std::sin(q[i]), i, std::cos(q[i]));
+    }
+    for (int j = 0; j < n; ++j) write(std::cos(q[j]), j, -std::sin(q[j]));
+    double* const last = out;
+    write(potential, -1, 0);
+    for (int j = 0; slopes && j < n; ++j) last[1 + j] = q[j];
+  }
+  static void hessian(const void* /*system*/,
+                      const double* q,
+                      const double* v,
+                      const double* lambda,
+                      double* l_qq) {
+    std::fill_n(l_qq, n * n, 0.0);
+    for (int i = 0; i < n; ++i) {
+      l_qq[i * n + i] = -std::sin(q[i]) * v[i] * v[i] / 2 - 1 + lambda[0] * std::cos(q[i]) * v[i];
+    }
+  }
+  static constexpr TranscriptionFunctions kFunctions = {n, 1, false, entries, hessian};
+};
+
+template <int n>
+void expect_exact_derivatives() {
+  constexpr int kTerms = n + 2;
+  constexpr int kUnknowns = 2 * n + 1;
+  constexpr double h = 0.5;
+  const TranscriptionFunctions& functions = Separate<n>::kFunctions;
+  test::Generator generator(n);
+  const Vector<double, 2 * n> at = test::random_vector<2 * n>(generator);
+  const auto terms = [&](const Vector<double, 2 * n>& y) {
+    Vector<double, kTerms> out;
+    EXPECT_TRUE(midpoint_terms(functions, nullptr, y.data(), y.data() + n, out.data(), nullptr));
+    return out;
+  };
+  Vector<double, kTerms> values;
+  Eigen::Matrix<double, kTerms, 2 * n, Eigen::RowMajor> jacobian;
+  ASSERT_TRUE(
+      midpoint_terms(functions, nullptr, at.data(), at.data() + n, values.data(), jacobian.data()));
+  EXPECT_LE((values - terms(at)).cwiseAbs().maxCoeff(), 64 * kEps);
+  for (int i = 0; i < 2 * n; ++i) {
+    EXPECT_LE((difference(terms, at, i) - jacobian.col(i)).cwiseAbs().maxCoeff(), kDifferences);
+  }
+  using Unknowns = Vector<double, kUnknowns>;
+  const auto gradient = [&](const Unknowns& y) {
+    Unknowns out;
+    discrete_lagrangian(functions, nullptr, h, y.data(), out.data(), nullptr);
+    return out;
+  };
+  const Unknowns x = test::random_vector<kUnknowns>(generator);
+  Unknowns slope;
+  Matrix<double, kUnknowns, kUnknowns> hessian;
+  discrete_lagrangian(functions, nullptr, h, x.data(), slope.data(), hessian.data());
+  EXPECT_LE((slope - gradient(x)).cwiseAbs().maxCoeff(), 64 * kEps);
+  for (int i = 0; i < kUnknowns; ++i) {
+    EXPECT_LE((difference(gradient, x, i) - hessian.col(i)).cwiseAbs().maxCoeff(), kDifferences);
+  }
+}
+
+TEST(MidpointRows, OfEveryLengthHaveExactDerivatives) {
+  expect_exact_derivatives<7>();   // 8
+  expect_exact_derivatives<8>();   // 16
+  expect_exact_derivatives<16>();  // 64
+}
+
 }  // namespace
 }  // namespace carnot::midpoint_transcription_test
