@@ -13,6 +13,7 @@
 #include "carnot/make_inlined_dynamics.h"
 #include "carnot/scenes/appell.h"
 #include "carnot/scenes/kapitza_pendulum.h"
+#include "carnot/scenes/unicycle.h"
 #include "carnot/scenes/vehicle.h"
 #include "carnot/step/gauss.h"
 
@@ -73,21 +74,8 @@ Pair kapitza_pendulum() {
 }
 
 // A unicycle that does not say that its heading is an angle.
-struct FarHeading {
-  static constexpr int kDof = 3;
-  static constexpr int kMultipliers = 1;
-
-  template <class T>
-  [[nodiscard]] Matrix<T, 3, 3> mass(const Vector<T, 3>& /*q*/) const {
-    return diagonal<T>(1, 1, 1);
-  }
-  template <class T>
-  [[nodiscard]] Matrix<T, 1, 3> constraints(const Vector<T, 3>& q) const {
-    using std::cos, std::sin;
-    Matrix<T, 1, 3> g;
-    g << sin(q[2]), -cos(q[2]), T(0);
-    return g;
-  }
+struct FarHeading : scenes::Unicycle {
+  [[nodiscard]] SceneInfo info() const = delete;
 };
 
 class MakeKernel : public ::testing::TestWithParam<Pair (*)()> {
