@@ -15,16 +15,22 @@
 
 namespace carnot {
 
-template <class T, int m>
+// m rows, or where m is Eigen::Dynamic, as many as `a` has, at most `most`.
+template <class T, int m, int most = m>
 class ScaledLu {
  public:
-  explicit ScaledLu(const Matrix<T, m, m>& a) : lu_(a) {
+  template <class U>
+  using Column = Eigen::Matrix<U, m, 1, 0, most, 1>;
+  using Square = Eigen::Matrix<T, m, m, 0, most, most>;
+
+  explicit ScaledLu(const Square& a) : lu_(a), scale_(a.rows()) {
     using std::abs;
     balance();
-    const T threshold = pivot_round_off<T>(m);
-    for (int j = 0; j < m; ++j) {
+    const int size = static_cast<int>(lu_.rows());
+    const T threshold = pivot_round_off<T>(size);
+    for (int j = 0; j < size; ++j) {
       int pivot = j;
-      for (int i = j + 1; i < m; ++i) {
+      for (int i = j + 1; i < size; ++i) {
         if (abs(lu_(i, j)) > abs(lu_(pivot, j))) pivot = i;
       }
       row_[j] = pivot;
@@ -34,9 +40,9 @@ class ScaledLu {
       }
       determinant_ *= lu_(j, j) / (scale_[j] * scale_[j]);
       regular_ = regular_ && abs(lu_(j, j)) > threshold;
-      for (int i = j + 1; i < m; ++i) {
+      for (int i = j + 1; i < size; ++i) {
         lu_(i, j) /= lu_(j, j);
-        for (int k = j + 1; k < m; ++k) lu_(i, k) -= lu_(i, j) * lu_(j, k);
+        for (int k = j + 1; k < size; ++k) lu_(i, k) -= lu_(i, j) * lu_(j, k);
       }
     }
   }
@@ -46,28 +52,30 @@ class ScaledLu {
   [[nodiscard]] T determinant() const { return determinant_; }
 
   // A^-1 b. On Jets each component of b: A is a constant.
-  template <class U>
-  [[nodiscard]] Vector<U, m> solve(const Vector<U, m>& b) const {
+  template <class Derived>
+  [[nodiscard]] Column<typename Derived::Scalar> solve(const Eigen::MatrixBase<Derived>& b) const {
+    using U = typename Derived::Scalar;
+    const int size = static_cast<int>(lu_.rows());
     if constexpr (kIsJet<U>) {
-      Vector<typename U::Scalar, m> part;
-      Vector<U, m> x;
-      for (int i = 0; i < m; ++i) part[i] = b[i].a;
+      Column<typename U::Scalar> part(size);
+      Column<U> x(size);
+      for (int i = 0; i < size; ++i) part[i] = b[i].a;
       part = solve(part);
-      for (int i = 0; i < m; ++i) x[i].a = part[i];
+      for (int i = 0; i < size; ++i) x[i].a = part[i];
       for (int d = 0; d < U::kDirections; ++d) {
-        for (int i = 0; i < m; ++i) part[i] = b[i].v[d];
+        for (int i = 0; i < size; ++i) part[i] = b[i].v[d];
         part = solve(part);
-        for (int i = 0; i < m; ++i) x[i].v[d] = part[i];
+        for (int i = 0; i < size; ++i) x[i].v[d] = part[i];
       }
       return x;
     } else {
-      Vector<T, m> x = b.cwiseProduct(scale_);
-      for (int i = 0; i < m; ++i) std::swap(x[i], x[row_[i]]);
-      for (int i = 1; i < m; ++i) {
+      Column<T> x = b.cwiseProduct(scale_);
+      for (int i = 0; i < size; ++i) std::swap(x[i], x[row_[i]]);
+      for (int i = 1; i < size; ++i) {
         for (int k = 0; k < i; ++k) x[i] -= lu_(i, k) * x[k];
       }
-      for (int i = m - 1; i >= 0; --i) {
-        for (int k = i + 1; k < m; ++k) x[i] -= lu_(i, k) * x[k];
+      for (int i = size - 1; i >= 0; --i) {
+        for (int k = i + 1; k < size; ++k) x[i] -= lu_(i, k) * x[k];
         x[i] /= lu_(i, i);
       }
       return x.cwiseProduct(scale_);
@@ -79,23 +87,24 @@ class ScaledLu {
   void balance() {
     using std::abs, std::sqrt;
     constexpr int kSweeps = 3;
+    const int rows = static_cast<int>(lu_.rows());
     scale_.setConstant(T(1));
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
-      Vector<T, m> d;
-      for (int i = 0; i < m; ++i) {
+      Column<T> d(rows);
+      for (int i = 0; i < rows; ++i) {
         const T size = lu_.row(i).cwiseAbs().maxCoeff();
         d[i] = size > T(0) ? T(1) / sqrt(size) : T(1);
       }
-      for (int i = 0; i < m; ++i) {
-        for (int j = 0; j < m; ++j) lu_(i, j) *= d[i] * d[j];
+      for (int i = 0; i < rows; ++i) {
+        for (int j = 0; j < rows; ++j) lu_(i, j) *= d[i] * d[j];
       }
       scale_ = scale_.cwiseProduct(d).eval();
     }
   }
 
-  Matrix<T, m, m> lu_;
-  Vector<T, m> scale_;
-  std::array<int, m> row_;
+  Square lu_;
+  Column<T> scale_;
+  std::array<int, most> row_;
   T determinant_ = T(1);
   bool regular_ = true;
 };

@@ -1,7 +1,8 @@
 // Newton's method for H_y(t, q, p, y) = 0 at one phase point, on real numbers, m > 0.
 //
-// A system offers kDof (n), kAlgebraic (m) and the template hamiltonian(t, q, p, y), and perhaps
-// cold_start(t, q, p); H_y and H_yy come from Jets in y.
+// The method asks for H_y and H_yy only, by StationaryEquations or by whatever has the same
+// functions. There, a system offers kDof (n), kAlgebraic (m) and the template hamiltonian(t, q, p,
+// y), and perhaps cold_start(t, q, p); H_y and H_yy come from Jets in y.
 //
 // Two solutions y at one (q, p) are parted by points where det H_yy = 0. From a warm start Newton's
 // method is to find the solution that belongs to it, so a step is shortened until what is left of
@@ -29,12 +30,21 @@ concept HasColdStart = requires(const S& system, const Vector<double, S::kDof>& 
   { system.cold_start(0.0, q, q) } -> std::convertible_to<Vector<double, S::kAlgebraic>>;
 };
 
+template <class E>
+concept HasFirstGuess = requires(const E& equations) {
+  { equations.cold_start() } -> std::convertible_to<typename E::Unknowns>;
+};
+
 // H_y = 0 as equations for y at one (t, q, p). T is a real type, m > 0.
 template <class System_, class T>
 struct StationaryEquations {
   using System = System_;
   static constexpr int n = System::kDof;
   static constexpr int m = System::kAlgebraic;
+  using Number = T;
+  using Unknowns = Vector<T, m>;
+  using Square = Matrix<T, m, m>;
+  using Factor = ScaledLu<T, m>;
 
   const System& system;
   T t;
@@ -67,6 +77,13 @@ struct StationaryEquations {
     }
   }
 
+  [[nodiscard]] int size() const { return m; }
+  // A guess of y, where the system has one.
+  template <HasColdStart S = System>
+  [[nodiscard]] Unknowns cold_start() const {
+    return static_cast<const S&>(system).cold_start(t, q, p);
+  }
+
   // How much H_y(y) moves when the last bits of q, p and y do: what its own rounding may be.
   [[nodiscard]] Vector<T, m> noise(const Vector<T, m>& y) const {
     const Vector<T, m> here = residual(y);
@@ -95,24 +112,30 @@ struct StationaryEquations {
 
 // Damped Newton iteration; at most kMaxIterations linear systems. With `keep_branch` a step may not
 // change det H_yy by more than a factor either, let alone its sign.
-template <class System, class T>
+template <class Equations>
 class StationaryNewton {
  public:
-  static constexpr int m = System::kAlgebraic;
+  using T = typename Equations::Number;
+  using Unknowns = typename Equations::Unknowns;
+  using Square = typename Equations::Square;
+  using Factor = typename Equations::Factor;
   static constexpr int kMaxIterations = 100;
   static constexpr int kMaxHalvings = 30;
 
-  explicit StationaryNewton(const StationaryEquations<System, T>& equations)
-      : equations_(equations) {}
+  explicit StationaryNewton(const Equations& equations)
+      : equations_(equations),
+        residual_(equations.size()),
+        step_(equations.size()),
+        hessian_(equations.size(), equations.size()) {}
 
   // From y; on failure y is unchanged.
-  [[nodiscard]] RateStatus solve(bool keep_branch, Vector<T, m>& y) {
+  [[nodiscard]] RateStatus solve(bool keep_branch, Unknowns& y) {
     x_ = y;
     step_.setConstant(std::numeric_limits<T>::max());
     singular_solution_ = false;
     equations_.linearize(x_, residual_, hessian_);
     if (!(residual_.allFinite() && hessian_.allFinite())) return RateStatus::kNotFinite;
-    ScaledLu<T, m> factor(hessian_);
+    Factor factor(hessian_);
     const T first_determinant = factor.determinant();
     Progress progress = Progress::kMoved;
     for (int i = 0; i < kMaxIterations && progress == Progress::kMoved; ++i) {
@@ -146,9 +169,9 @@ class StationaryNewton {
     using std::abs;
     const T few = T(8) * epsilon<T>();
     if (step_.cwiseAbs().maxCoeff() <= few * x_.cwiseAbs().maxCoeff()) return true;
-    for (int i = 0; i < m; ++i) {
+    for (int i = 0; i < residual_.size(); ++i) {
       T size(0);
-      for (int j = 0; j < m; ++j) size += abs(hessian_(i, j) * x_[j]);
+      for (int j = 0; j < residual_.size(); ++j) size += abs(hessian_(i, j) * x_[j]);
       if (!(abs(residual_[i]) <= few * size)) return false;
     }
     return true;
@@ -157,23 +180,23 @@ class StationaryNewton {
   // x_ <- x_ + a step_ with the first a = 1, 1/2, ... that passes the tests. When settled, step_ is
   // what is left by the old factor, else residual_, hessian_ and the factor are those of the new
   // x_.
-  [[nodiscard]] Progress advance(bool keep_branch, ScaledLu<T, m>& factor) {
-    const Vector<T, m> start = x_;
-    const Vector<T, m> step = step_;
+  [[nodiscard]] Progress advance(bool keep_branch, Factor& factor) {
+    const Unknowns start = x_;
+    const Unknowns step = step_;
     const T length = step.norm();
-    const Vector<T, m> residual = residual_;
-    const Matrix<T, m, m> hessian = hessian_;
+    const Unknowns residual = residual_;
+    const Square hessian = hessian_;
     T a(1);
     for (int halving = 0; halving < kMaxHalvings; ++halving, a *= T(0.5)) {
       x_ = start + a * step;
       residual_ = equations_.residual(x_);
       step_ = -factor.solve(residual_);
-      const Vector<T, m> expected = (T(1) - a) * step;
+      const Unknowns expected = (T(1) - a) * step;
       const T deviation = (step_ - expected).norm();
       if (!(deviation <= T(0.5) * a * length)) continue;  // also where it is not a number
       if (settled()) return Progress::kSettled;
       equations_.linearize(x_, residual_, hessian_);
-      const ScaledLu<T, m> next(hessian_);
+      const Factor next(hessian_);
       const T ratio = next.determinant() / factor.determinant();
       if (hessian_.allFinite() && (!keep_branch || (ratio > T(0.25) && ratio < T(4)))) {
         factor = next;
@@ -192,45 +215,48 @@ class StationaryNewton {
     using std::cbrt;
     const T third = cbrt(epsilon<T>());
     if (step_.cwiseAbs().maxCoeff() <= third * third * x_.cwiseAbs().maxCoeff()) return true;
-    const Vector<T, m> noise = equations_.noise(x_);
+    const Unknowns noise = equations_.noise(x_);
     return (residual_.cwiseAbs().array() <= noise.array()).all();
   }
 
   // The iterates ran into a point where det H_yy is small against where they began: is it zero
   // within the rounding of the solution?
-  [[nodiscard]] bool singular_root(const ScaledLu<T, m>& factor, const T& first_determinant) const {
+  [[nodiscard]] bool singular_root(const Factor& factor, const T& first_determinant) const {
     using std::abs, std::cbrt;
     if (abs(factor.determinant()) > cbrt(epsilon<T>()) * abs(first_determinant)) return false;
-    const Vector<T, m> radius = factor.solve(equations_.noise(x_));
-    Vector<T, m> residual;
-    Matrix<T, m, m> hessian;
+    const Unknowns radius = factor.solve(equations_.noise(x_));
+    Unknowns residual(radius.size());
+    Square hessian(radius.size(), radius.size());
     for (const int sign : {-1, 1}) {
       equations_.linearize(x_ + T(sign) * radius, residual, hessian);
-      const T ratio = ScaledLu<T, m>(hessian).determinant() / factor.determinant();
+      const T ratio = Factor(hessian).determinant() / factor.determinant();
       if (!(ratio > T(0.5) && ratio < T(2))) return true;
     }
     return false;
   }
 
-  const StationaryEquations<System, T>& equations_;
-  Vector<T, m> x_;
-  Vector<T, m> residual_;
-  Vector<T, m> step_;
-  Matrix<T, m, m> hessian_;
+  const Equations& equations_;
+  Unknowns x_;
+  Unknowns residual_;
+  Unknowns step_;
+  Square hessian_;
   bool singular_solution_ = false;
 };
 
 // Newton's method from starts of its own: the scene's, y = 0, and others of the size of the least
 // squares step from 0. Which branch is found where there are several is not said: use a warm start.
-template <class System, class T>
-[[nodiscard]] RateStatus stationary_cold_start(const StationaryEquations<System, T>& equations,
-                                               Vector<T, System::kAlgebraic>& y) {
-  constexpr int m = System::kAlgebraic;
-  StationaryNewton<System, T> newton(equations);
+template <class Equations>
+[[nodiscard]] RateStatus stationary_cold_start(const Equations& equations,
+                                               typename Equations::Unknowns& y) {
+  using T = typename Equations::Number;
+  using Unknowns = typename Equations::Unknowns;
+  using Square = typename Equations::Square;
+  const int m = equations.size();
+  StationaryNewton<Equations> newton(equations);
   RateStatus result = RateStatus::kNotFinite;
   // True when there is no need to go on. "No solution" says more than "singular at the start".
-  const auto settled = [&](const Vector<T, m>& start) {
-    Vector<T, m> x = start;
+  const auto settled = [&](const Unknowns& start) {
+    Unknowns x = start;
     const RateStatus status = newton.solve(false, x);
     if (status == RateStatus::kOk) y = x;
     const bool settles = status == RateStatus::kOk || newton.singular_solution();
@@ -239,31 +265,29 @@ template <class System, class T>
     }
     return settles;
   };
-  if constexpr (HasColdStart<System>) {
-    if (settled(equations.system.cold_start(equations.t, equations.q, equations.p))) {
-      return result;
-    }
+  if constexpr (HasFirstGuess<Equations>) {
+    if (settled(equations.cold_start())) return result;
   }
-  const Vector<T, m> zero = Vector<T, m>::Constant(T(0));
+  const Unknowns zero = Unknowns::Constant(m, T(0));
   if (settled(zero)) return result;
 
   // Where H_yy is singular at 0, its least squares step: (A A + d I) x = -A r, d small.
-  Vector<T, m> residual;
-  Matrix<T, m, m> a;
+  Unknowns residual(m);
+  Square a(m, m);
   equations.linearize(zero, residual, a);
   const T size = a.cwiseAbs().maxCoeff();
   if (!residual.allFinite() || !a.allFinite() || !(size > T(0))) return result;
-  Matrix<T, m, m> normal = product(a, a);
+  Square normal = a.lazyProduct(a);
   for (int i = 0; i < m; ++i) normal(i, i) += std::numeric_limits<float>::epsilon() * size * size;
-  const Vector<T, m> right = product(a, residual);
-  const Vector<T, m> start = -ScaledLu<T, m>(normal).solve(right);
+  const Unknowns right = a.lazyProduct(residual);
+  const Unknowns start = -typename Equations::Factor(normal).solve(right);
   const T radius = start.cwiseAbs().maxCoeff();
   if (!start.allFinite() || !(radius > T(0))) return result;
   if (settled(start)) return result;
 
   constexpr int kMore = 8;
   for (int k = 1; k <= kMore; ++k) {
-    Vector<T, m> x = start;
+    Unknowns x = start;
     for (int i = 0; i < m; ++i) x[i] += radius * T(evenly_spread(k * m + i));
     if (settled(x)) return result;
   }
@@ -280,7 +304,7 @@ template <class System, class T>
                                           Vector<T, System::kAlgebraic>& y) {
   const StationaryEquations<System, T> equations{system, t, q, p};
   if ((y.array() == T(0)).all()) return stationary_cold_start(equations, y);
-  return StationaryNewton<System, T>(equations).solve(true, y);
+  return StationaryNewton(equations).solve(true, y);
 }
 
 }  // namespace carnot
