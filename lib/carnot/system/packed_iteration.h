@@ -1,6 +1,7 @@
 // The fixed-point iteration on all the stages of a step, side by side in packs.
 #pragma once
 
+#include <array>
 #include <limits>
 
 #include "carnot/numerics/linear_algebra.h"
@@ -80,6 +81,29 @@ template <int s, class System>
   }
   for (int k = 0; k < System::kAlgebraic; ++k) y[k].store(data.algebraic + k * s);
   return moved;
+}
+
+// The whole iteration with rates(z_dot), the rates at the stages in rows of s, which says whether
+// they exist: for systems whose rates do not run on packs here.
+template <int size, int s, class Rates>
+StageReport iterate_with(const Rates& rates,
+                         const StageData& data,
+                         const IterationLimits<double>& limits) {
+  StageReport report;
+  const auto sweep = [&](double* change) {
+    ++report.sweeps;
+    const double moved = move_stages<size, s>(data, change, [](int, const auto&) {});
+    alignas(64) std::array<double, size * s> z_dot;
+    if (!rates(z_dot.data())) return std::numeric_limits<double>::quiet_NaN();
+    const Pack<s> weight = Pack<s>::load(data.weights);
+    for (int k = 0; k < size; ++k) {
+      (weight * Pack<s>::load(z_dot.data() + k * s)).store(data.increments + k * s);
+    }
+    return moved;
+  };
+  report.end =
+      iterate_stages<double, size>(limits, sweep, [&] { return scale_of_stages<size, s>(data); });
+  return report;
 }
 
 // The whole iteration. Where a rate fails, the stages are moved and the increments are those

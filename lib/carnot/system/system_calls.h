@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <type_traits>
 #include <utility>
 
@@ -126,24 +125,12 @@ StageReport iterate(const void* opaque,
   if constexpr (PacksRates<System>) {
     return packed_iteration<kErasedLanes>(system_of<System>(opaque), data, limits);
   } else {
-    constexpr int size = 2 * System::kDof;
-    constexpr int s = kErasedLanes;
-    StageReport report;
-    const auto sweep = [&](double* change) {
-      ++report.sweeps;
-      const double moved = move_stages<size, s>(data, change, [](int, const auto&) {});
-      std::array<double, size * s> z_dot;
-      if (!rates<System>(opaque, data.time, data.stages, data.algebraic, z_dot.data())) {
-        return std::numeric_limits<double>::quiet_NaN();
-      }
-      for (int k = 0; k < size; ++k) {
-        for (int l = 0; l < s; ++l) data.increments[k * s + l] = data.weights[l] * z_dot[k * s + l];
-      }
-      return moved;
-    };
-    report.end =
-        iterate_stages<double, size>(limits, sweep, [&] { return scale_of_stages<size, s>(data); });
-    return report;
+    return iterate_with<2 * System::kDof, kErasedLanes>(
+        [&](double* z_dot) {
+          return rates<System>(opaque, data.time, data.stages, data.algebraic, z_dot);
+        },
+        data,
+        limits);
   }
 }
 
