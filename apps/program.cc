@@ -7,12 +7,12 @@
 #include <iostream>
 #include <stdexcept>
 
+#include "carnot/language/nearest.h"
 #include "run/delivery.h"
 #include "run/laboratory.h"
 #include "run/subcommands.h"
 #include "text/arguments.h"
 #include "text/interrupt.h"
-#include "text/nearest.h"
 #include "text/numbers.h"
 #include "text/version.h"
 
@@ -66,7 +66,7 @@ CLI::App* find_subcommand(CLI::App& app, const std::vector<std::string>& argumen
   const std::string& first = arguments.front();
   if (first == "-h" || first == "--help" || first == "--version") return nullptr;
   if (std::find(names.begin(), names.end(), first) == names.end()) {
-    refuse("SUBCOMMAND", first, "no such subcommand" + suggestion(first, names), accepted);
+    refuse("SUBCOMMAND", first, "no such subcommand" + language::suggestion(first, names), accepted);
   }
   return app.get_subcommand(first);
 }
@@ -81,7 +81,7 @@ CLI::App* find_subcommand(CLI::App& app, const std::vector<std::string>& argumen
   const std::string name = extra.substr(0, extra.find('='));
   refuse(option ? "option" : "argument",
          extra,
-         option ? "no such option" + suggestion(name, known) : "not expected",
+         option ? "no such option" + language::suggestion(name, known) : "not expected",
          fmt::format("{}", fmt::join(known, ", ")));
 }
 

@@ -20,13 +20,13 @@
 #include "run/delivery.h"
 #include "run/laboratory.h"
 #include "run/subcommands.h"
-#include "text/nearest.h"
 #include "text/numbers.h"
 #include "text/output_file.h"
 #include "text/progress_bar.h"
 #ifdef CARNOT_PEERS
 #include "benchmark/peers/boundary_peers.h"
 #include "benchmark/peers/peers.h"
+#include "carnot/language/nearest.h"
 #endif
 
 namespace carnot::apps {
@@ -108,7 +108,7 @@ std::vector<BenchmarkTrajectory> check_scenes(const std::vector<std::string>& na
     if (found == known.end()) {
       refuse("SCENE",
              name,
-             "no trajectory to benchmark" + suggestion(name, known),
+             "no trajectory to benchmark" + language::suggestion(name, known),
              fmt::format("{}", fmt::join(known, ", ")));
     }
     if (!seen.insert(name).second) refuse("SCENE", name, "given twice", "each scene once");

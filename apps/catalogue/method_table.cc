@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "text/nearest.h"
+#include "carnot/language/nearest.h"
 #include "text/numbers.h"
 
 namespace carnot::apps {
@@ -23,7 +23,7 @@ const Method& choose_method(std::string_view name,
   if (method != nullptr && entry.suits(*method)) return *method;
   const std::vector<std::string> names = method_names(entry);
   const std::string why =
-      method == nullptr ? "no such method" + suggestion(name, names)
+      method == nullptr ? "no such method" + language::suggestion(name, names)
                         : entry.info.name + " has holonomic constraints, which it does not keep";
   refuse("--method", name, why, fmt::format("{}", fmt::join(names, ", ")));
 }

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <memory>
 
+#include "carnot/language/nearest.h"
 #include "catalogue/holonomic_check.h"
 #include "catalogue/scene_choice.h"
 #include "geodesic/geodesic_result.h"
 #include "run/subcommands.h"
-#include "text/nearest.h"
 #include "text/numbers.h"
 #include "text/progress_bar.h"
 
@@ -59,7 +59,7 @@ std::string check_minimiser(const std::string& name) {
   if (std::find(known.begin(), known.end(), name) == known.end()) {
     refuse("--minimiser",
            name,
-           "no such minimiser" + suggestion(name, known),
+           "no such minimiser" + language::suggestion(name, known),
            fmt::format("{}", fmt::join(known, ", ")));
   }
   return name;

@@ -7,13 +7,13 @@
 #include <mutex>
 #include <set>
 
+#include "carnot/language/nearest.h"
 #include "carnot/numerics/parallel.h"
 #include "catalogue/method_table.h"
 #include "catalogue/scene_choice.h"
 #include "run/delivery.h"
 #include "run/laboratory.h"
 #include "run/subcommands.h"
-#include "text/nearest.h"
 #include "text/numbers.h"
 #include "text/progress_bar.h"
 #include "verify/audit_text.h"
@@ -77,7 +77,7 @@ std::vector<const Method*> check_methods(const std::string& text) {
     if (method == nullptr) {
       refuse("--method",
              name,
-             "no such method" + suggestion(name, known),
+             "no such method" + language::suggestion(name, known),
              fmt::format("{}", fmt::join(known, ",")));
     }
     chosen.push_back(method);

@@ -1,3 +1,4 @@
+#include "carnot/language/nearest.h"
 #include "text/arguments.h"
 
 #include <gmock/gmock.h>
@@ -5,7 +6,6 @@
 
 #include <stdexcept>
 
-#include "text/nearest.h"
 
 namespace carnot::apps::arguments_test {
 namespace {
@@ -49,18 +49,18 @@ TEST(OneLine, EscapesControlCharacters) {
 }
 
 TEST(Nearest, MeasuresEdits) {
-  EXPECT_EQ(edit_distance("", ""), 0);
-  EXPECT_EQ(edit_distance("abc", ""), 3);
-  EXPECT_EQ(edit_distance("", "abc"), 3);
-  EXPECT_EQ(edit_distance("kitten", "sitting"), 3);
+  EXPECT_EQ(language::edit_distance("", ""), 0);
+  EXPECT_EQ(language::edit_distance("abc", ""), 3);
+  EXPECT_EQ(language::edit_distance("", "abc"), 3);
+  EXPECT_EQ(language::edit_distance("kitten", "sitting"), 3);
 }
 
 TEST(Nearest, SuggestsOnlyWhatIsNear) {
   const std::vector<std::string> known{"vehicle", "heisenberg"};
-  EXPECT_EQ(nearest("vehicel", known), "vehicle");
-  EXPECT_EQ(nearest("banana", known), "");
-  EXPECT_EQ(suggestion("heisenburg", known), " (did you mean heisenberg?)");
-  EXPECT_EQ(suggestion(std::string(100000, 'x'), known), "");
+  EXPECT_EQ(language::nearest("vehicel", known), "vehicle");
+  EXPECT_EQ(language::nearest("banana", known), "");
+  EXPECT_EQ(language::suggestion("heisenburg", known), " (did you mean heisenberg?)");
+  EXPECT_EQ(language::suggestion(std::string(100000, 'x'), known), "");
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
-#include "text/nearest.h"
+#include "carnot/language/nearest.h"
 
 #include <algorithm>
 #include <numeric>
 
-namespace carnot::apps {
+namespace carnot::language {
 
 int edit_distance(std::string_view a, std::string_view b) {
   std::vector<int> row(b.size() + 1);  // distances of the current head of a to all heads of b
@@ -39,4 +39,4 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& kn
   return best.empty() ? "" : " (did you mean " + best + "?)";
 }
 
-}  // namespace carnot::apps
+}  // namespace carnot::language

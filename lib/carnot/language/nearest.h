@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace carnot::apps {
+namespace carnot::language {
 
 // Insertions, deletions and replacements that turn a into b (Levenshtein).
 int edit_distance(std::string_view a, std::string_view b);
@@ -16,4 +16,4 @@ std::string nearest(std::string_view word, const std::vector<std::string>& known
 // " (did you mean X?)", or nothing.
 std::string suggestion(std::string_view word, const std::vector<std::string>& known);
 
-}  // namespace carnot::apps
+}  // namespace carnot::language
