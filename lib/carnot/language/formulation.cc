@@ -1,0 +1,585 @@
+#include "carnot/language/formulation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace carnot::language {
+namespace {
+
+class Formulator {
+ public:
+  Formulator(const SceneSource& scene, std::string_view text, const std::string& file)
+      : scene_(scene), graph_(*scene.graph), text_(text), file_(file) {}
+
+  Formulation run() {
+    out_.dof = scene_.dof();
+    if (scene_.chart) out_.chart = scene_.chart->expression;
+    if (scene_.hamiltonian) {
+      generalized();
+    } else if (scene_.lagrangian) {
+      lagrangian();
+    } else if (!scene_.controls.empty()) {
+      control();
+    } else if (scene_.kinetic || scene_.mass) {
+      velocity();
+    } else {
+      fail({1, 1},
+           "nothing is said that a path makes stationary; accepted: kinetic or mass, controls and "
+           "cost, lagrangian, or hamiltonian");
+    }
+    guess();
+    if (out_.dof > kMostDof) {
+      fail({1, 1},
+           "there are " + std::to_string(out_.dof) + " coordinates; accepted: at most " +
+               std::to_string(kMostDof));
+    }
+    return std::move(out_);
+  }
+
+ private:
+  [[noreturn]] void fail(const Place& place, const std::string& what) const {
+    refuse_text(text_, file_, place, what);
+  }
+
+  SymbolicVector variables(const Block& block, int count) {
+    SymbolicVector result;
+    for (int i = 0; i < count; ++i) result.push_back(graph_.variable(block.first + i));
+    return result;
+  }
+  SymbolicVector velocities() { return variables(kVelocity, scene_.dof()); }
+  SymbolicVector momenta() { return variables(kMomentum, scene_.dof()); }
+
+  bool depends(const Expression& e, const Block& block) {
+    return graph_.depends(e, block.first, block.count);
+  }
+  bool depends(const SymbolicMatrix& m, const Block& block) {
+    return std::any_of(
+        m.entries.begin(), m.entries.end(), [&](const Expression& e) { return depends(e, block); });
+  }
+  // a with zeros for a block.
+  Expression without(const Expression& a, const Block& block) {
+    const SymbolicVector zeros(static_cast<std::size_t>(block.count), graph_.number(0));
+    return graph_.substitute(a, block.first, zeros);
+  }
+  Expression half_form(const SymbolicMatrix& m, const SymbolicVector& x) {
+    return 0.5 * dot(graph_, x, product(graph_, m, x));
+  }
+  void refuse(const std::optional<Formula>& formula, const std::string& what) const {
+    if (formula) fail(formula->place, what);
+  }
+  void refuse(const std::optional<MatrixFormula>& formula, const std::string& what) const {
+    if (formula) fail(formula->place, what);
+  }
+
+  // Only Newton's method begins somewhere.
+  void guess() {
+    if (scene_.guess.empty()) return;
+    const bool control = out_.kind == Formulation::Kind::kOptimalControl;
+    if (!control && out_.kind != Formulation::Kind::kLagrangian) {
+      fail(scene_.guess[0].second.place,
+           "a guess is of use with controls and for a lagrangian only");
+    }
+    const Block& block = control ? kAlgebraic : kVelocity;
+    out_.guess.assign(static_cast<std::size_t>(out_.algebraic), graph_.number(0));
+    for (const auto& [of, formula] : scene_.guess) {
+      const int i = static_cast<int>(graph_.node(of.node).index) - block.first;
+      if (i < 0 || i >= out_.algebraic) fail(formula.place, "a guess of what is not to be found");
+      if (depends(formula.expression, kVelocity) || depends(formula.expression, kAlgebraic)) {
+        fail(formula.place, "a guess may depend on t, coordinates and momenta only");
+      }
+      out_.guess[i] = formula.expression;
+    }
+  }
+
+  // ---- velocity constraints, H = p.v - v'M v/2 + V + lambda.G v
+
+  SymbolicMatrix mass() {
+    const int n = scene_.dof();
+    if (scene_.mass) {
+      refuse(scene_.kinetic, "'kinetic' beside 'mass'; one of them is enough");
+      const MatrixFormula& given = *scene_.mass;
+      if (given.rows != n || given.columns != n) {
+        fail(given.place,
+             "the mass is " + std::to_string(given.rows) + " x " + std::to_string(given.columns) +
+                 "; accepted: a row and a column for "
+                 "each of the " +
+                 std::to_string(n) + " coordinates");
+      }
+      SymbolicMatrix m(graph_, n, n);
+      m.entries = given.entries;
+      for (int i = 0; i < n; ++i) {
+        for (int j = 0; j < i; ++j) {
+          if (!(m(i, j) - m(j, i)).is_zero()) fail(given.place, "the mass is not symmetric");
+        }
+      }
+      if (depends(m, kVelocity) || depends(m, kTime)) {
+        fail(given.place, "the mass may depend on the coordinates only");
+      }
+      return m;
+    }
+    const Formula& kinetic = *scene_.kinetic;
+    const SymbolicVector slopes = gradient(graph_, kinetic.expression, kVelocity.first, n);
+    const SymbolicMatrix m = jacobian(graph_, slopes, kVelocity.first, n);
+    const bool quadratic = !depends(m, kVelocity);
+    if (quadratic && !without(kinetic.expression, kVelocity).is_zero()) {
+      fail(kinetic.place,
+           "the kinetic energy does not vanish at rest; accepted: potential = ... "
+           "for the part without velocities");
+    }
+    const bool straight = std::all_of(slopes.begin(), slopes.end(), [&](const Expression& e) {
+      return without(e, kVelocity).is_zero();
+    });
+    if (!quadratic || !straight) {
+      fail(kinetic.place,
+           "the kinetic energy is no quadratic form in the velocities; accepted: "
+           "lagrangian = ... for any other function");
+    }
+    if (depends(kinetic.expression, kTime)) {
+      fail(kinetic.place, "the kinetic energy depends on t; accepted: lagrangian = ...");
+    }
+    return m;
+  }
+
+  // Rows linear in the velocities.
+  SymbolicMatrix linear_rows() {
+    const int n = scene_.dof();
+    SymbolicVector rows;
+    for (const Formula& row : scene_.rows) {
+      if (!depends(row.expression, kVelocity)) {
+        fail(row.place,
+             "a constraint without velocities is holonomic, which scenes from text do "
+             "not have yet; write coordinates on which it holds");
+      }
+      if (depends(row.expression, kTime)) {
+        fail(row.place, "the constraint depends on t; accepted with lagrangian = ...");
+      }
+      const SymbolicMatrix slopes = jacobian(graph_, {row.expression}, kVelocity.first, n);
+      if (depends(slopes, kVelocity) || !without(row.expression, kVelocity).is_zero()) {
+        fail(row.place,
+             "the constraint is not linear in the velocities; accepted with "
+             "lagrangian = ...");
+      }
+      rows.push_back(row.expression);
+    }
+    if (static_cast<int>(rows.size()) >= n) {
+      fail(scene_.rows.back().place, "as many constraints as coordinates leave nothing free");
+    }
+    return jacobian(graph_, rows, kVelocity.first, n);
+  }
+
+  void velocity() {
+    refuse(scene_.cost, "'cost' without controls");
+    out_.kind = Formulation::Kind::kVelocityConstraints;
+    const int n = scene_.dof();
+    const SymbolicMatrix m = mass();
+    const SymbolicMatrix g = linear_rows();
+    const int k = g.rows;
+    out_.multipliers = k;
+    Expression potential = graph_.number(0);
+    if (scene_.potential) {
+      potential = scene_.potential->expression;
+      if (depends(potential, kVelocity) || depends(potential, kTime)) {
+        fail(scene_.potential->place,
+             "the potential may depend on the coordinates only; accepted: "
+             "lagrangian = ... for any other function");
+      }
+    }
+    const SymbolicVector v = velocities();
+    const SymbolicVector p = momenta();
+    std::vector<Check> rank;
+    if (const auto frame = frame_of(graph_, g, rank)) {
+      const SymbolicVector u = variables(kAlgebraic, n - k);
+      out_.algebraic = n - k;
+      const SymbolicVector speed = product(graph_, *frame, u);
+      // v'M v/2 on the frame as the text has it: terms that vanish there do so before they meet.
+      const Expression kinetic =
+          scene_.kinetic ? graph_.substitute(scene_.kinetic->expression, kVelocity.first, speed)
+                         : half_form(m, speed);
+      const SymbolicMatrix reduced = jacobian(
+          graph_, gradient(graph_, kinetic, kAlgebraic.first, n - k), kAlgebraic.first, n - k);
+      out_.hamiltonian =
+          graph_.sum(SymbolicVector{dot(graph_, p, speed), -half_form(reduced, u), potential});
+      out_.checks = rank;
+      definite(reduced, transposed_product(graph_, *frame, p), RateStatus::kMassNotPositive);
+      multipliers(m, g, p, speed);
+    } else {
+      const SymbolicVector y = variables(kAlgebraic, n + k);
+      const SymbolicVector speed(y.begin(), y.begin() + n);
+      const SymbolicVector lambda(y.begin() + n, y.end());
+      out_.algebraic = n + k;
+      out_.hamiltonian = graph_.sum(SymbolicVector{dot(graph_, p, speed),
+                                                   -half_form(m, speed),
+                                                   potential,
+                                                   dot(graph_, lambda, product(graph_, g, speed))});
+      saddle(m, g, p, SymbolicVector(static_cast<std::size_t>(k), graph_.number(0)));
+      out_.lambda = lambda;
+    }
+    out_.constraint = product(graph_, g, v);
+    out_.square_speed = dot(graph_, v, product(graph_, m, v));
+    project(g, out_.constraint);
+    const SymbolicVector force = variables(kMultiplier, k);
+    out_.momentum = product(graph_, m, v);
+    const SymbolicVector pushed = transposed_product(graph_, g, force);
+    for (int i = 0; i < n; ++i) out_.momentum[i] = out_.momentum[i] - pushed[i];
+    const Expression l = graph_.sum(
+        SymbolicVector{half_form(m, v), -potential, -dot(graph_, force, out_.constraint)});
+    out_.transcription = TranscriptionFormulas{m, g, potential, false, l};
+  }
+
+  // y from A y = b, A = -H_yy positive definite.
+  void definite(const SymbolicMatrix& a, const SymbolicVector& b, RateStatus status) {
+    const SymbolicCholesky factor(graph_, a);
+    factor.add_checks(status, out_.checks);
+    out_.solution = factor.solve(b);
+    out_.solve = [factor](const SymbolicVector& right) { return factor.solve(right); };
+  }
+
+  // (v, lambda) from M v - G'lambda = a, -G v = b.
+  void saddle(const SymbolicMatrix& m,
+              const SymbolicMatrix& g,
+              const SymbolicVector& a,
+              const SymbolicVector& b) {
+    const int n = m.rows;
+    const int k = g.rows;
+    SymbolicMatrix regular = m;
+    Expression gamma = graph_.number(0);
+    const SymbolicMatrix g_t = transposed(graph_, g);
+    if (k > 0) {
+      SymbolicCholesky(graph_, product(graph_, g, g_t))
+          .add_checks(RateStatus::kConstraintRank, out_.checks);
+      const SymbolicMatrix square = product(graph_, g_t, g);
+      SymbolicVector mass_trace;
+      SymbolicVector square_trace;
+      for (int i = 0; i < n; ++i) {
+        mass_trace.push_back(m(i, i));
+        square_trace.push_back(square(i, i));
+      }
+      gamma = graph_.sum(mass_trace) / graph_.sum(square_trace);
+      if (gamma.is_zero()) gamma = graph_.number(1);
+      for (int i = 0; i < n; ++i) {
+        for (int j = 0; j < n; ++j) regular(i, j) = m(i, j) + gamma * square(i, j);
+      }
+    }
+    const SymbolicCholesky factor(graph_, regular);
+    factor.add_checks(RateStatus::kMassNotPositive, out_.checks);
+    SymbolicMatrix w(graph_, n, k);  // A^-1 G'
+    for (int i = 0; i < k; ++i) {
+      SymbolicVector row;
+      for (int j = 0; j < n; ++j) row.push_back(g(i, j));
+      const SymbolicVector column = factor.solve(row);
+      for (int j = 0; j < n; ++j) w(j, i) = column[j];
+    }
+    const SymbolicCholesky schur(graph_, product(graph_, g, w));
+    Graph* const graph = &graph_;
+    out_.solve = [=](const SymbolicVector& right) {
+      SymbolicVector r(right.begin(), right.begin() + n);
+      const SymbolicVector below(right.begin() + n, right.end());
+      const SymbolicVector back = product(*graph, g_t, below);
+      for (int i = 0; i < n && k > 0; ++i) r[i] = r[i] - gamma * back[i];
+      SymbolicVector x = factor.solve(r);
+      if (k == 0) return x;
+      SymbolicVector s = product(*graph, g, x);
+      for (int i = 0; i < k; ++i) s[i] = -(below[i] + s[i]);
+      const SymbolicVector mu = schur.solve(s);
+      const SymbolicVector pushed = product(*graph, w, mu);
+      for (int i = 0; i < n; ++i) x[i] = x[i] + pushed[i];
+      x.insert(x.end(), mu.begin(), mu.end());
+      return x;
+    };
+    SymbolicVector right = a;
+    right.insert(right.end(), b.begin(), b.end());
+    out_.solution = out_.solve(right);
+  }
+
+  // lambda from G G'lambda = G (M v - p).
+  void multipliers(const SymbolicMatrix& m,
+                   const SymbolicMatrix& g,
+                   const SymbolicVector& p,
+                   const SymbolicVector& v) {
+    if (g.rows == 0) return;
+    const SymbolicCholesky gram(graph_, product(graph_, g, transposed(graph_, g)));
+    gram.add_checks(RateStatus::kConstraintRank, out_.lambda_checks);
+    SymbolicVector excess = product(graph_, m, v);
+    for (std::size_t i = 0; i < excess.size(); ++i) excess[i] = excess[i] - p[i];
+    out_.lambda = gram.solve(product(graph_, g, excess));
+  }
+
+  // v - G'(G G')^-1 g(q, v), g affine in v.
+  void project(const SymbolicMatrix& g, const SymbolicVector& value) {
+    out_.projected = velocities();
+    if (g.rows == 0) return;
+    const SymbolicCholesky gram(graph_, product(graph_, g, transposed(graph_, g)));
+    gram.add_checks(RateStatus::kConstraintRank, out_.projected_checks);
+    const SymbolicVector part = transposed_product(graph_, g, gram.solve(value));
+    for (int i = 0; i < g.columns; ++i) out_.projected[i] = out_.projected[i] - part[i];
+  }
+
+  // ---- Lagrangian, H = p.v - L + lambda.g
+
+  void lagrangian() {
+    refuse(scene_.kinetic, "'kinetic' beside 'lagrangian'");
+    refuse(scene_.mass, "'mass' beside 'lagrangian'");
+    refuse(scene_.potential, "'potential' beside 'lagrangian'");
+    refuse(scene_.cost, "'cost' beside 'lagrangian'");
+    if (!scene_.controls.empty()) fail(scene_.lagrangian->place, "'lagrangian' beside controls");
+    out_.kind = Formulation::Kind::kLagrangian;
+    const int n = scene_.dof();
+    const int k = static_cast<int>(scene_.rows.size());
+    if (k >= n) fail(scene_.rows.back().place, "as many constraints as coordinates");
+    out_.multipliers = k;
+    out_.algebraic = n + k;
+    const Expression l = scene_.lagrangian->expression;
+    SymbolicVector g;
+    out_.autonomous = !depends(l, kTime);
+    for (const Formula& row : scene_.rows) {
+      if (!depends(row.expression, kVelocity)) {
+        fail(row.place,
+             "a constraint without velocities is holonomic, which scenes from text do "
+             "not have yet; write coordinates on which it holds");
+      }
+      g.push_back(row.expression);
+      out_.autonomous = out_.autonomous && !depends(row.expression, kTime);
+    }
+    const SymbolicVector y = variables(kAlgebraic, n + k);
+    const SymbolicVector speed(y.begin(), y.begin() + n);
+    const SymbolicVector lambda(y.begin() + n, y.end());
+    const SymbolicVector p = momenta();
+    const auto at_speed = [&](const Expression& e) {
+      return graph_.substitute(e, kVelocity.first, speed);
+    };
+    SymbolicVector terms{dot(graph_, p, speed), -at_speed(l)};
+    for (int i = 0; i < k; ++i) terms.push_back(lambda[i] * at_speed(g[i]));
+    out_.hamiltonian = graph_.sum(terms);
+    out_.lambda = lambda;
+    out_.constraint = g;
+    const SymbolicVector v = velocities();
+    const SymbolicVector slopes = gradient(graph_, l, kVelocity.first, n);
+    const SymbolicMatrix m = jacobian(graph_, slopes, kVelocity.first, n);
+    const SymbolicMatrix rows = jacobian(graph_, g, kVelocity.first, n);
+    const SymbolicVector force = variables(kMultiplier, k);
+    out_.momentum = slopes;
+    const SymbolicVector pushed = transposed_product(graph_, rows, force);
+    for (int i = 0; i < n; ++i) out_.momentum[i] = out_.momentum[i] - pushed[i];
+    out_.linear = !depends(m, kVelocity) && !depends(rows, kVelocity);
+    if (!out_.linear) return;
+    project(rows, g);
+    SymbolicVector a;
+    SymbolicVector b;
+    for (int i = 0; i < n; ++i) a.push_back(p[i] - without(slopes[i], kVelocity));
+    for (int i = 0; i < k; ++i) b.push_back(without(g[i], kVelocity));
+    saddle(m, rows, a, b);
+  }
+
+  // ---- optimal control, H = p.f - l
+
+  void control() {
+    refuse(scene_.kinetic, "'kinetic' beside controls; accepted: cost = ...");
+    refuse(scene_.mass, "'mass' beside controls; accepted: cost = ...");
+    refuse(scene_.potential, "'potential' beside controls; accepted: cost = ...");
+    if (!scene_.rows.empty()) {
+      fail(scene_.rows[0].place,
+           "an equation beside controls; accepted: x' = ... for each "
+           "coordinate");
+    }
+    out_.kind = Formulation::Kind::kOptimalControl;
+    const int n = scene_.dof();
+    const int c = static_cast<int>(scene_.controls.size());
+    if (!scene_.cost) fail({1, 1}, "there are controls, and no cost; accepted: cost = ...");
+    const Expression cost = scene_.cost->expression;
+    if (depends(cost, kVelocity)) {
+      fail(scene_.cost->place,
+           "the cost depends on velocities; accepted: coordinates and controls");
+    }
+    SymbolicVector f;
+    out_.autonomous = !depends(cost, kTime);
+    for (int i = 0; i < n; ++i) {
+      if (i >= static_cast<int>(scene_.dynamics.size()) || !scene_.dynamics[i]) {
+        fail(scene_.cost->place,
+             "the velocity of " + scene_.coordinates[i].name +
+                 " is not given; accepted: " + scene_.coordinates[i].name + "' = ...");
+      }
+      const Formula& row = *scene_.dynamics[i];
+      if (depends(row.expression, kVelocity)) {
+        fail(row.place, "a velocity on the right; accepted: coordinates and controls");
+      }
+      f.push_back(row.expression);
+      out_.autonomous = out_.autonomous && !depends(row.expression, kTime);
+    }
+    if (c > 2 * n) fail(scene_.cost->place, "too many controls");
+    out_.algebraic = c;
+    const SymbolicVector p = momenta();
+    out_.hamiltonian = dot(graph_, p, f) - cost;
+    const SymbolicMatrix frame = jacobian(graph_, f, kAlgebraic.first, c);
+    const SymbolicVector slopes = gradient(graph_, cost, kAlgebraic.first, c);
+    const SymbolicMatrix weight = jacobian(graph_, slopes, kAlgebraic.first, c);
+    out_.linear = !depends(frame, kAlgebraic) && !depends(weight, kAlgebraic);
+    if (!out_.linear) return;
+    const auto at_rest = [&](const Expression& e) { return without(e, kAlgebraic); };
+    SymbolicVector b = transposed_product(graph_, frame, p);
+    bool metric = out_.autonomous && at_rest(cost).is_zero();
+    for (int i = 0; i < c; ++i) {
+      const Expression linear = at_rest(slopes[i]);
+      metric = metric && linear.is_zero();
+      b[i] = b[i] - linear;
+    }
+    for (int i = 0; i < n; ++i) {
+      out_.drift.push_back(at_rest(f[i]));
+      metric = metric && out_.drift.back().is_zero();
+    }
+    definite(weight, b, RateStatus::kNotIndexOne);
+    out_.frame = frame;
+    if (metric) metric_control(frame, weight);
+  }
+
+  // The velocities as those of a projector; see admissible_velocities.h.
+  void metric_control(const SymbolicMatrix& frame, const SymbolicMatrix& weight) {
+    constexpr double kRegular = 1e-14;
+    const int n = frame.rows;
+    const int c = frame.columns;
+    const SymbolicMatrix frame_t = transposed(graph_, frame);
+    SymbolicMatrix square = product(graph_, frame_t, frame);
+    SymbolicVector trace;
+    for (int i = 0; i < c; ++i) trace.push_back(square(i, i));
+    const Expression small = kRegular * graph_.sum(trace);
+    for (int i = 0; i < c; ++i) square(i, i) = square(i, i) + small;
+    const SymbolicCholesky factor(graph_, square);
+    SymbolicMatrix w(graph_, c, n);
+    for (int j = 0; j < n; ++j) {
+      SymbolicVector row;
+      for (int i = 0; i < c; ++i) row.push_back(frame(j, i));
+      const SymbolicVector column = factor.solve(row);
+      for (int i = 0; i < c; ++i) w(i, j) = column[i];
+    }
+    TranscriptionFormulas formulas;
+    formulas.gauge = true;
+    formulas.mass = product(graph_, transposed(graph_, w), product(graph_, weight, w));
+    const SymbolicMatrix gauge = product(graph_, frame, w);
+    formulas.constraints = identity(graph_, n);
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) {
+        formulas.constraints(i, j) = formulas.constraints(i, j) - gauge(i, j);
+      }
+    }
+    formulas.potential = graph_.number(0);
+    const SymbolicVector v = velocities();
+    const SymbolicVector lambda = variables(kMultiplier, n);
+    const SymbolicVector b = transposed_product(graph_, frame, lambda);
+    const SymbolicVector u = factor.solve(transposed_product(graph_, frame, v));
+    const Expression running = dot(graph_, u, product(graph_, weight, u));
+    formulas.lagrangian = graph_.sum(SymbolicVector{0.5 * running,
+                                                    -(0.5 * dot(graph_, b, factor.solve(b))),
+                                                    dot(graph_, b, u),
+                                                    -dot(graph_, lambda, v)});
+    out_.square_speed = running;
+    out_.transcription = std::move(formulas);
+  }
+
+  // ---- generalized Hamiltonian, J z' = grad H(z)
+
+  void generalized() {
+    refuse(scene_.kinetic, "'kinetic' beside 'hamiltonian'");
+    refuse(scene_.mass, "'mass' beside 'hamiltonian'");
+    refuse(scene_.potential, "'potential' beside 'hamiltonian'");
+    refuse(scene_.cost, "'cost' beside 'hamiltonian'");
+    refuse(scene_.lagrangian, "'lagrangian' beside 'hamiltonian'");
+    if (!scene_.rows.empty()) fail(scene_.rows[0].place, "an equation beside 'hamiltonian'");
+    if (!scene_.controls.empty()) fail(scene_.hamiltonian->place, "'hamiltonian' beside controls");
+    out_.kind = Formulation::Kind::kGeneralizedHamiltonian;
+    const int size = scene_.dof();
+    const Expression h = scene_.hamiltonian->expression;
+    if (depends(h, kVelocity)) {
+      fail(scene_.hamiltonian->place,
+           "the hamiltonian depends on velocities; accepted: coordinates, "
+           "all of z");
+    }
+    if (!scene_.structure) {
+      fail(scene_.hamiltonian->place,
+           "there is no structure; accepted: structure = [0, -1; 1, 0], "
+           "the antisymmetric J of J z' = grad H(z)");
+    }
+    const std::vector<double> j = constants(*scene_.structure, size);
+    try {
+      if (scene_.basis) {
+        const int rank = darboux_form(j, size).dof;
+        out_.darboux = darboux_form(j, size, rank, constants(*scene_.basis, size));
+      } else {
+        out_.darboux = darboux_form(j, size);
+      }
+    } catch (const std::invalid_argument& error) {
+      fail(scene_.structure->place, error.what());
+    }
+    const int n = out_.darboux->dof;
+    const int m = size - 2 * n;
+    if (n > kMostDof || m > 2 * n) {
+      fail(scene_.structure->place,
+           "the structure has rank " + std::to_string(2 * n) + " of " + std::to_string(size) +
+               "; accepted: a rank from " + "half the size to " + std::to_string(2 * kMostDof));
+    }
+    out_.dof = n;
+    out_.algebraic = m;
+    out_.multipliers = m;
+    out_.autonomous = !depends(h, kTime);
+    SymbolicVector x = variables(kConfiguration, n);
+    for (const Expression& e : variables(kMomentum, n)) x.push_back(e);
+    for (const Expression& e : variables(kAlgebraic, m)) x.push_back(e);
+    SymbolicVector z;
+    for (int i = 0; i < size; ++i) {
+      SymbolicVector terms;
+      for (int l = 0; l < size; ++l) terms.push_back(out_.darboux->basis[l * size + i] * x[l]);
+      z.push_back(graph_.sum(terms));
+    }
+    out_.hamiltonian = graph_.substitute(h, kConfiguration.first, z);
+    out_.lambda = variables(kAlgebraic, m);
+    out_.linear = m == 0;
+    if (m == 0) out_.solve = [](const SymbolicVector& b) { return b; };
+  }
+
+  // Column by column, as darboux.h has matrices.
+  std::vector<double> constants(const MatrixFormula& m, int size) {
+    if (m.rows != size || m.columns != size) {
+      fail(m.place,
+           "the matrix is " + std::to_string(m.rows) + " x " + std::to_string(m.columns) +
+               "; accepted: a row and a column for each of the " + std::to_string(size) +
+               " coordinates");
+    }
+    std::vector<double> numbers(m.entries.size());
+    for (int i = 0; i < size; ++i) {
+      for (int j = 0; j < size; ++j) {
+        if (!m(i, j).is_constant()) fail(m.place, "an entry of the matrix is not constant");
+        numbers[j * size + i] = m(i, j).coefficient;
+      }
+    }
+    return numbers;
+  }
+
+  const SceneSource& scene_;
+  Graph& graph_;
+  std::string_view text_;
+  const std::string& file_;
+  Formulation out_;
+};
+
+}  // namespace
+
+std::string_view kind_text(const Formulation& formulation) {
+  switch (formulation.kind) {
+    case Formulation::Kind::kVelocityConstraints:
+      return "velocity constraints";
+    case Formulation::Kind::kLagrangian:
+      return "Lagrangian";
+    case Formulation::Kind::kOptimalControl:
+      return "optimal control";
+    case Formulation::Kind::kGeneralizedHamiltonian:
+      return "generalized Hamiltonian";
+  }
+  return "";
+}
+
+Formulation formulate(const SceneSource& scene, std::string_view text, const std::string& file) {
+  return Formulator(scene, text, file).run();
+}
+
+}  // namespace carnot::language

@@ -1,0 +1,75 @@
+// Small matrices of expressions, and factors of them without pivots.
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "carnot/language/expression.h"
+#include "carnot/system/rate_status.h"
+
+namespace carnot::language {
+
+struct SymbolicMatrix {
+  SymbolicMatrix() = default;
+  SymbolicMatrix(Graph& graph, int row_count, int column_count)
+      : rows(row_count),
+        columns(column_count),
+        entries(static_cast<std::size_t>(row_count * column_count), graph.number(0)) {}
+
+  Expression& operator()(int i, int j) { return entries[i * columns + j]; }
+  const Expression& operator()(int i, int j) const { return entries[i * columns + j]; }
+
+  int rows = 0;
+  int columns = 0;
+  std::vector<Expression> entries{};
+};
+
+using SymbolicVector = std::vector<Expression>;
+
+SymbolicMatrix identity(Graph& graph, int size);
+SymbolicMatrix transposed(Graph& graph, const SymbolicMatrix& a);
+SymbolicMatrix product(Graph& graph, const SymbolicMatrix& a, const SymbolicMatrix& b);
+SymbolicVector product(Graph& graph, const SymbolicMatrix& a, const SymbolicVector& x);
+SymbolicVector transposed_product(Graph& graph, const SymbolicMatrix& a, const SymbolicVector& x);
+Expression dot(Graph& graph, const SymbolicVector& a, const SymbolicVector& b);
+
+// What must be greater than zero for a formula to mean anything, and what is wrong where it is not.
+struct Check {
+  Expression value;
+  RateStatus status = RateStatus::kOk;
+};
+
+// A = L D L' of a symmetric matrix that is to be positive definite: straight-line, in the form of
+// numerics/cholesky.h. Only what is at or below the diagonal of `a` is read.
+class SymbolicCholesky {
+ public:
+  SymbolicCholesky(Graph& graph, const SymbolicMatrix& a);
+
+  [[nodiscard]] SymbolicVector solve(const SymbolicVector& b) const;
+  // L^-1 b, and D^-1.
+  [[nodiscard]] SymbolicVector forward(const SymbolicVector& b) const;
+  [[nodiscard]] const SymbolicVector& inverse_pivots() const { return inverses_; }
+  // That the pivots are positive to round-off, but for those that are constants and are.
+  void add_checks(RateStatus status, std::vector<Check>& checks) const;
+
+ private:
+  Graph* graph_;
+  SymbolicMatrix lower_;
+  SymbolicVector inverses_;
+  SymbolicVector slack_;  // each pivot minus what would be round-off
+};
+
+// d f / d (block), n of them.
+SymbolicVector gradient(Graph& graph, const Expression& f, int first, int count);
+// d a_i / d (block).
+SymbolicMatrix jacobian(Graph& graph, const SymbolicVector& a, int first, int count);
+
+// B with G B = 0, as many columns as G leaves free, by elimination: rows with a constant entry give
+// the velocity of its column, and a row of two entries (a, b) gives (-b, a). Nothing where neither
+// is left. Where a and b vanish together, which `checks` tell, G loses rank.
+std::optional<SymbolicMatrix> frame_of(Graph& graph,
+                                       const SymbolicMatrix& constraints,
+                                       std::vector<Check>& checks);
+
+}  // namespace carnot::language
