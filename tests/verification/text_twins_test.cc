@@ -1,0 +1,259 @@
+// Every scene of the program as text, against its compiled twin: point by point, and along flows.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "carnot/load_scene.h"
+#include "carnot/system/system_functions.h"
+#include "carnot/transcription/transcription_functions.h"
+#include "catalogue/scene_choice.h"
+
+namespace carnot::text_twins_test {
+namespace {
+
+using apps::SceneEntry;
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+// Another order of the same operations, in formulas of up to a hundred of them with a condition of
+// up to ten at these points: measured up to 12 eps.
+constexpr double kRoundOff = 100 * kEps;
+
+std::vector<std::string> names() {
+  std::vector<std::string> result;
+  for (const SceneEntry& entry : apps::scene_registry()) {
+    if (entry.holonomic == 0) result.push_back(entry.info.name);
+  }
+  return result;
+}
+
+double largest(const std::vector<double>& x) {
+  double most = 0;
+  for (const double e : x) most = std::max(most, std::abs(e));
+  return most;
+}
+
+double distance(const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<double> d(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) d[i] = a[i] - b[i];
+  return largest(d);
+}
+
+class TextTwins : public ::testing::TestWithParam<std::string> {
+ protected:
+  TextTwins()
+      : entry_(apps::find_scene(GetParam())),
+        scene_(load_scene(CARNOT_SOURCE_DIR "/lib/carnot/scenes/" + GetParam() + ".scene")),
+        text_(make_dynamics(scene_)),
+        twin_(entry_.make({}, "gauss16")) {}
+
+  std::vector<double> random(int count) {
+    std::uniform_real_distribution<double> number(-1, 1);
+    std::vector<double> x(static_cast<std::size_t>(count));
+    for (double& e : x) e = number(bits_);
+    return x;
+  }
+
+  // What both say at one phase point.
+  struct Values {
+    RateStatus status;
+    std::vector<double> rate;
+    std::vector<double> jacobian;
+    std::vector<double> lambda;
+    double hamiltonian;
+  };
+  static Values at(const Dynamics& d, double t, const std::vector<double>& z) {
+    const int n = d.dof;
+    const SystemFunctions& f = *d.functions;
+    const void* const system = d.system.get();
+    std::vector<double> y(static_cast<std::size_t>(f.algebraic));
+    f.branch(system, y.data());
+    Values v{RateStatus::kOk,
+             std::vector<double>(2 * n),
+             std::vector<double>(4 * n * n),
+             std::vector<double>(static_cast<std::size_t>(f.multipliers)),
+             0};
+    v.status = f.rate(system, t, z.data(), y.data(), v.rate.data());
+    if (v.status != RateStatus::kOk) return v;
+    v.hamiltonian = f.hamiltonian(system, t, z.data(), z.data() + n, y.data());
+    EXPECT_EQ(f.find_multipliers(system, t, z.data(), z.data() + n, y.data(), v.lambda.data()),
+              RateStatus::kOk);
+    EXPECT_EQ(f.jacobian(system, t, z.data(), y.data(), v.jacobian.data()), RateStatus::kOk);
+    return v;
+  }
+
+  const SceneEntry& entry_;
+  TextScene scene_;
+  Dynamics text_;
+  Dynamics twin_;
+  std::mt19937_64 bits_{3};
+};
+
+TEST_P(TextTwins, SaysTheSameOfItself) {
+  const SceneInfo& text = scene_.info();
+  const SceneInfo& twin = entry_.info;
+  EXPECT_EQ(text.name, twin.name);
+  EXPECT_EQ(text.summary, twin.summary);
+  EXPECT_EQ(text.kind, twin.kind);
+  EXPECT_EQ(text.reference, twin.reference);
+  EXPECT_EQ(scene_.dof(), entry_.dof);
+  EXPECT_EQ(scene_.multipliers(), entry_.multipliers);
+  ASSERT_EQ(text.configuration.size(), twin.configuration.size());
+  for (std::size_t i = 0; i < twin.configuration.size(); ++i) {
+    EXPECT_EQ(text.configuration[i].name, twin.configuration[i].name);
+    EXPECT_EQ(text.configuration[i].unit, twin.configuration[i].unit);
+    EXPECT_EQ(text.configuration[i].period, twin.configuration[i].period);
+  }
+  ASSERT_EQ(scene_.parameters().size(), entry_.parameters.size());
+  for (std::size_t i = 0; i < entry_.parameters.size(); ++i) {
+    EXPECT_EQ(scene_.parameters()[i].name, entry_.parameters[i].name);
+    EXPECT_EQ(scene_.parameters()[i].default_value, entry_.parameters[i].default_value);
+    EXPECT_EQ(scene_.parameters()[i].unit, entry_.parameters[i].unit);
+    EXPECT_EQ(scene_.parameters()[i].range.text(), entry_.parameters[i].range.text());
+  }
+  EXPECT_EQ(text_.autonomous, twin_.autonomous);
+  EXPECT_EQ(text_.transcribed, twin_.transcribed);
+  EXPECT_EQ(text_.has_transcription(), twin_.has_transcription());
+  EXPECT_EQ(text_.has_branches(), twin_.has_branches());
+}
+
+// Those that the twin names are found; there may be more.
+TEST_P(TextTwins, FindsTheSymmetries) {
+  const Symmetries& found = scene_.info().symmetries;
+  const Symmetries& known = entry_.info.symmetries;
+  for (const std::vector<double>& mirror : known.mirrors) {
+    EXPECT_NE(std::find(found.mirrors.begin(), found.mirrors.end(), mirror), found.mirrors.end());
+  }
+  for (const int i : known.cyclic) {
+    EXPECT_NE(std::find(found.cyclic.begin(), found.cyclic.end(), i), found.cyclic.end()) << i;
+  }
+  if (known.x < 0) return;
+  EXPECT_EQ(found.x, known.x);
+  EXPECT_EQ(found.y, known.y);
+  for (const int i : known.angles) {
+    EXPECT_NE(std::find(found.angles.begin(), found.angles.end(), i), found.angles.end()) << i;
+  }
+}
+
+TEST_P(TextTwins, AgreesAtRandomPoints) {
+  constexpr int kPoints = 50;
+  int other_branch = 0;
+  for (int i = 0; i < kPoints; ++i) {
+    const std::vector<double> z = random(2 * text_.dof);
+    const Values text = at(text_, 0.3, z);
+    const Values twin = at(twin_, 0.3, z);
+    ASSERT_EQ(text.status, twin.status);
+    if (twin.status != RateStatus::kOk) continue;
+    // Near a singular point Newton's method may end on either of two solutions.
+    if (text_.has_branches() && distance(text.rate, twin.rate) > 1e-3) {
+      ++other_branch;
+      continue;
+    }
+    EXPECT_LE(distance(text.rate, twin.rate), kRoundOff * (1 + largest(twin.rate)));
+    EXPECT_LE(distance(text.jacobian, twin.jacobian), kRoundOff * (1 + largest(twin.jacobian)));
+    EXPECT_LE(distance(text.lambda, twin.lambda), kRoundOff * (1 + largest(twin.lambda)));
+    EXPECT_NEAR(text.hamiltonian, twin.hamiltonian, kRoundOff * (1 + std::abs(twin.hamiltonian)));
+  }
+  EXPECT_LE(other_branch, 1);
+}
+
+TEST_P(TextTwins, TurnsVelocitiesIntoTheSameMomenta) {
+  const int n = text_.dof;
+  for (int i = 0; i < 20; ++i) {
+    const std::vector<double> q = random(n);
+    std::vector<double> v = random(n);
+    for (double& e : v) e *= 0.5;  // of a relativistic particle, below the speed of light
+    std::vector<double> w = v;
+    const std::vector<double> lambda = random(text_.multipliers);
+    std::vector<double> p(v.size());
+    std::vector<double> expected(v.size());
+    const double violated = text_.momentum(0.3, q, v, lambda, p);
+    const double twin = twin_.momentum(0.3, q, w, lambda, expected);
+    ASSERT_EQ(std::isnan(violated), std::isnan(twin));
+    if (std::isnan(twin)) continue;
+    // Iterations end at round-off of their equations, times their condition.
+    constexpr double kIterated = 100 * kRoundOff;
+    EXPECT_NEAR(violated, twin, kIterated * (1 + twin));
+    EXPECT_LE(distance(v, w), kIterated * (1 + largest(w)));
+    EXPECT_LE(distance(p, expected), kIterated * (1 + largest(expected)));
+  }
+}
+
+// The entries of the transcription and the Hessian of its Lagrangian.
+TEST_P(TextTwins, IsTranscribedAlike) {
+  ASSERT_EQ(text_.has_transcription(), twin_.has_transcription());
+  if (!twin_.has_transcription()) return;
+  const TranscriptionFunctions& f = *text_.transcription;
+  const TranscriptionFunctions& g = *twin_.transcription;
+  ASSERT_EQ(f.gauge, g.gauge);
+  ASSERT_EQ(f.constraints, g.constraints);
+  const int n = f.dof;
+  // Through Cholesky factors of F'F, whose condition is up to a hundred at these points.
+  constexpr double kTolerance = 100 * kRoundOff;
+  for (int i = 0; i < 20; ++i) {
+    const std::vector<double> q = random(n);
+    const std::vector<double> v = random(n);
+    const std::vector<double> lambda = random(f.constraints);
+    for (const bool slopes : {false, true}) {
+      const int size = entry_count(f) * (slopes ? row_length(n) : 1);
+      std::vector<double> a(static_cast<std::size_t>(size));
+      std::vector<double> b(a.size());
+      f.entries(text_.system.get(), q.data(), slopes, a.data());
+      g.entries(twin_.system.get(), q.data(), slopes, b.data());
+      EXPECT_LE(distance(a, b), kTolerance * (1 + largest(b)));
+    }
+    std::vector<double> a(static_cast<std::size_t>(n * n));
+    std::vector<double> b(a.size());
+    f.hessian(text_.system.get(), q.data(), v.data(), lambda.data(), a.data());
+    g.hessian(twin_.system.get(), q.data(), v.data(), lambda.data(), b.data());
+    EXPECT_LE(distance(a, b), kTolerance * (1 + largest(b)));
+  }
+}
+
+TEST_P(TextTwins, FlowsAlike) {
+  constexpr double kTolerance = 1e-11;  // round-off of 40 steps of a motion that enlarges it
+  for (const char* method : {"gauss16", "midpoint", "dop853"}) {
+    const Dynamics text = make_dynamics(scene_, method);
+    const Dynamics twin = entry_.make({}, method);
+    const int n = text.dof;
+    std::vector<double> z(static_cast<std::size_t>(2 * n));
+    for (int i = 0; i < 2 * n; ++i) z[i] = 0.3 + 0.1 * std::sin(1.7 * i);
+    std::vector<double> w = z;
+    std::vector<double> m(static_cast<std::size_t>(4 * n * n));
+    std::vector<double> expected(m.size());
+    const StepPlan plan = StepPlan::equal(0, 2, 40);
+    ASSERT_TRUE(text.tangent_flow(plan, z, m).completed()) << method;
+    ASSERT_TRUE(twin.tangent_flow(plan, w, expected).completed()) << method;
+    EXPECT_LE(distance(z, w), kTolerance * (1 + largest(w))) << method;
+    EXPECT_LE(distance(m, expected), kTolerance * (1 + largest(expected))) << method;
+  }
+}
+
+TEST_P(TextTwins, MeasuresAlike) {
+  const int n = text_.dof;
+  std::vector<double> z(static_cast<std::size_t>(2 * n));
+  for (int i = 0; i < 2 * n; ++i) z[i] = 0.3 + 0.1 * std::sin(1.7 * i);
+  std::vector<double> w = z;
+  const StepPlan plan = StepPlan::equal(0, 2, 40);
+  const FlowSummary text = text_.monitored_flow(plan, z, {});
+  const FlowSummary twin = twin_.monitored_flow(plan, w, {});
+  constexpr double kTolerance = 1e-11;
+  EXPECT_NEAR(text.action, twin.action, kTolerance * (1 + std::abs(twin.action)));
+  EXPECT_EQ(std::isnan(text.length), std::isnan(twin.length));
+  if (!std::isnan(twin.length))
+    EXPECT_NEAR(text.length, twin.length, kTolerance * (1 + twin.length));
+  EXPECT_LE(text.constraint_error, 1e-13);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, TextTwins, ::testing::ValuesIn(names()), [](const auto& scene) {
+  std::string name = scene.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
+
+}  // namespace
+}  // namespace carnot::text_twins_test
