@@ -3,13 +3,40 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
-#include "text/nearest.h"
+#include "carnot/language/nearest.h"
+#include "carnot/load_scene.h"
 #include "text/numbers.h"
 
 namespace carnot::apps {
 namespace {
+
+bool is_scene_file(std::string_view name) {
+  constexpr std::string_view kEnding = ".scene";
+  return name.size() > kEnding.size() && name.substr(name.size() - kEnding.size()) == kEnding;
+}
+
+SceneEntry text_entry(const TextScene& scene) {
+  SceneEntry entry;
+  entry.info = scene.info();
+  entry.dof = scene.dof();
+  entry.multipliers = scene.multipliers();
+  for (const TextParameter& p : scene.parameters()) {
+    entry.parameters.push_back({p.name, p.default_value, p.unit, p.range, p.meaning});
+  }
+  entry.suits = [](const Method&) { return true; };
+  entry.make = [scene](const ParameterValues& values, const std::string& method) {
+    const bool same = std::all_of(
+        scene.parameters().begin(), scene.parameters().end(), [&](const TextParameter& p) {
+          const auto value = values.find(p.name);
+          return value == values.end() || value->second == p.value;
+        });
+    return make_dynamics(same ? scene : scene.with(values), method);
+  };
+  return entry;
+}
 
 std::vector<std::string> parameter_names(const SceneEntry& entry) {
   std::vector<std::string> names;
@@ -20,6 +47,12 @@ std::vector<std::string> parameter_names(const SceneEntry& entry) {
 }  // namespace
 
 const SceneEntry& find_scene(std::string_view name) {
+  if (is_scene_file(name)) {
+    static std::map<std::string, SceneEntry> files;
+    const auto known = files.find(std::string(name));
+    if (known != files.end()) return known->second;
+    return files.emplace(name, text_entry(load_scene(std::string(name)))).first->second;
+  }
   std::vector<std::string> names;
   for (const SceneEntry& entry : scene_registry()) {
     if (entry.info.name == name) return entry;
@@ -27,7 +60,7 @@ const SceneEntry& find_scene(std::string_view name) {
   }
   const std::string accepted = fmt::format("{}", fmt::join(names, ", "));
   if (name.empty()) refuse("SCENE", name, "no scene is given", accepted);
-  refuse("SCENE", name, "no such scene" + suggestion(name, names), accepted);
+  refuse("SCENE", name, "no such scene" + language::suggestion(name, names), accepted);
 }
 
 std::string accepted_parameters(const SceneEntry& entry) {
@@ -49,7 +82,7 @@ std::pair<std::string, double> parse_parameter(const SceneEntry& entry,
     const std::string why = fmt::format("{} has no parameter '{}'{}",
                                         entry.info.name,
                                         name,
-                                        suggestion(name, parameter_names(entry)));
+                                        language::suggestion(name, parameter_names(entry)));
     refuse(option, text, why, accepted);
   }
   const double value = parse_real(fmt::format("{} {}", option, name), text.substr(equals + 1));

@@ -10,7 +10,8 @@
 
 namespace carnot::apps {
 
-// Throws std::invalid_argument naming the known scenes.
+// A scene of the program, or of the file where the name ends in ".scene", which is read once. Throws
+// std::invalid_argument naming the known scenes, or what is wrong in the file.
 const SceneEntry& find_scene(std::string_view name);
 
 // One NAME=VALUE of a scene's parameter. Throws std::invalid_argument naming `option`, and what is

@@ -36,7 +36,7 @@ struct SceneEntry {
   bool needs_rattle = false;  // the holonomic constraints do
   std::vector<ParameterInfo> parameters;
   // Whether a method can integrate the scene.
-  bool (*suits)(const Method&) = nullptr;
+  std::function<bool(const Method&)> suits;
   // Throws std::invalid_argument on parameters out of range and methods that do not suit.
   std::function<Dynamics(const ParameterValues&, const std::string& method)> make;
 };

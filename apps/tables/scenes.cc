@@ -113,8 +113,10 @@ void add_scenes(CLI::App& app, Invocation& invocation) {
     const SceneEntry* one = options->scene.empty() ? nullptr : &find_scene(options->scene);
     check_table_output(options->destination);
     Json list = Json::array();
-    for (const SceneEntry& entry : scene_registry()) {
-      if (one == nullptr || one == &entry) list.push_back(scene_json(entry));
+    if (one != nullptr) {
+      list.push_back(scene_json(*one));
+    } else {
+      for (const SceneEntry& entry : scene_registry()) list.push_back(scene_json(entry));
     }
     Result result;
     result.json = result_head(invocation.arguments);
