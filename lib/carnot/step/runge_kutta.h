@@ -68,7 +68,7 @@ class RungeKutta {
 
   // The branch of H_y = 0 to begin with; zero leaves the choice to the system.
   void start_on(const Algebraic& y) {
-    algebraic_.colwise() = y;
+    if constexpr (System::kAlgebraic > 0) algebraic_.colwise() = y;
     branch_ = y;
     last_step_ = T(0);
   }
@@ -109,7 +109,7 @@ class RungeKutta {
     z = end;
     start_time_ = t;
     last_step_ = h;
-    branch_ = algebraic_.col(count - 1);
+    branch_ = algebraic(count - 1);
     return report;
   }
 
@@ -119,7 +119,14 @@ class RungeKutta {
   [[nodiscard]] const Tableau<T, s>& tableau() const { return tableau_; }
   [[nodiscard]] const Stages& stages() const { return stages_; }
   [[nodiscard]] const Stages& increments() const { return increments_; }
-  [[nodiscard]] Algebraic algebraic(int i) const { return algebraic_.col(i); }
+  [[nodiscard]] Algebraic algebraic(int i) const {
+    // Where there are none, Eigen does not know how many columns there are.
+    if constexpr (System::kAlgebraic == 0) {
+      return {};
+    } else {
+      return algebraic_.col(i);
+    }
+  }
   [[nodiscard]] const auto& algebraic() const { return algebraic_; }
   [[nodiscard]] T stage_time(int i) const { return start_time_ + tableau_.c[i] * last_step_; }
   [[nodiscard]] T last_step() const { return last_step_; }
@@ -186,12 +193,12 @@ class RungeKutta {
     const T time = block.t + tableau_.c[i] * block.h;
     const Point u = stages_.col(i);
     Point f;
-    Algebraic y = algebraic_.col(i);
+    Algebraic y = algebraic(i);
     const RateStatus rate = phase_rate(system_, time, u, y, f);
     ++report.evaluations;
     if (rate != RateStatus::kOk) return fail(rate, report);
     report.rate = rate;
-    algebraic_.col(i) = y;
+    set_algebraic(i, y);
     increments_.col(i) = (block.h * tableau_.omega[i]) * f;
     return true;
   }
@@ -229,11 +236,11 @@ class RungeKutta {
 
   // y of the stage before: for stages that are found one after the other.
   void warm_start(int i) {
-    if (i == 0) {
-      algebraic_.col(0) = branch_;
-    } else {
-      algebraic_.col(i) = algebraic_.col(i - 1);
-    }
+    set_algebraic(i, i == 0 ? branch_ : algebraic(i - 1));
+  }
+
+  void set_algebraic(int i, const Algebraic& y) {
+    if constexpr (System::kAlgebraic > 0) algebraic_.col(i) = y;
   }
 
   // First guess of the increments: from the last step, where this one repeats its length, or from
@@ -264,7 +271,7 @@ class RungeKutta {
     ++report.evaluations;
     if (rate != RateStatus::kOk) return fail(rate, report);
     for (int i = block.begin(); i < block.end(); ++i) {
-      algebraic_.col(i) = y;
+      set_algebraic(i, y);
       increments_.col(i) = (block.h * tableau_.omega[i]) * f;
     }
     return true;
