@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "carnot/language/nearest.h"
+#include "carnot/language/text_error.h"
 #include "run/delivery.h"
 #include "run/laboratory.h"
 #include "run/subcommands.h"
@@ -127,6 +128,10 @@ int run_program(const std::vector<std::string>& arguments,
   int status = kNotDelivered;
   try {
     status = run(arguments, subcommands);
+  } catch (const language::TextError& error) {
+    // FILE:LINE:COLUMN, as editors read it, with the line and a caret below.
+    fmt::print(stderr, "{}\n", error.what());
+    return kBadInput;
   } catch (const std::invalid_argument& error) {
     complain(error.what());
     return kBadInput;

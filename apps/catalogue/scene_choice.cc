@@ -13,11 +13,6 @@
 namespace carnot::apps {
 namespace {
 
-bool is_scene_file(std::string_view name) {
-  constexpr std::string_view kEnding = ".scene";
-  return name.size() > kEnding.size() && name.substr(name.size() - kEnding.size()) == kEnding;
-}
-
 SceneEntry text_entry(const TextScene& scene) {
   SceneEntry entry;
   entry.info = scene.info();
@@ -45,6 +40,11 @@ std::vector<std::string> parameter_names(const SceneEntry& entry) {
 }
 
 }  // namespace
+
+bool is_scene_file(std::string_view name) {
+  constexpr std::string_view kEnding = ".scene";
+  return name.size() > kEnding.size() && name.substr(name.size() - kEnding.size()) == kEnding;
+}
 
 const SceneEntry& find_scene(std::string_view name) {
   if (is_scene_file(name)) {

@@ -10,8 +10,11 @@
 
 namespace carnot::apps {
 
-// A scene of the program, or of the file where the name ends in ".scene", which is read once. Throws
-// std::invalid_argument naming the known scenes, or what is wrong in the file.
+// Whether the name is that of a file with a scene.
+bool is_scene_file(std::string_view name);
+
+// A scene of the program, or of the file where the name ends in ".scene", which is read once.
+// Throws std::invalid_argument naming the known scenes, or what is wrong in the file.
 const SceneEntry& find_scene(std::string_view name);
 
 // One NAME=VALUE of a scene's parameter. Throws std::invalid_argument naming `option`, and what is

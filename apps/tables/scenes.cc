@@ -2,13 +2,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <sstream>
+#include <stdexcept>
 
 #include "catalogue/scene_choice.h"
+#include "catalogue/scene_texts.h"
 #include "run/delivery.h"
 #include "run/subcommands.h"
+#include "text/numbers.h"
+#include "text/output_file.h"
 #include "text/text_table.h"
 
 namespace carnot::apps {
@@ -19,11 +25,16 @@ Examples
   carnot scenes
   carnot scenes vehicle
   carnot scenes --json
+  carnot scenes vehicle --text              the scene in the language of docs/scene_language.md
+  carnot scenes new robot                   writes robot.scene, a scene to begin with
+  carnot scenes robot.scene
 
 Exit status: 0 success, 1 a file could not be written, 2 bad input, 130 interrupted.)";
 
 struct ScenesCall {
   std::string scene;
+  std::string name;
+  bool text = false;
   Destination destination;
 };
 
@@ -101,15 +112,52 @@ std::string details(const SceneEntry& entry) {
   return text + '\n' + text_table(parameters);
 }
 
+// Writes NAME.scene, which must not be there yet.
+int write_new_scene(const std::string& name) {
+  const std::string accepted = "a name of letters, digits, '-' and '_'";
+  if (name.empty()) refuse_missing("NAME", accepted);
+  const bool plain = std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '_';
+  });
+  if (!plain || name[0] == '-') refuse("NAME", name, "not the name of a scene", accepted);
+  const std::string path = name + ".scene";
+  if (std::filesystem::exists(path)) {
+    refuse("NAME", name, path + " is there already", "a name that is not taken");
+  }
+  try {
+    write_file(path, new_scene_text(name));
+  } catch (const std::runtime_error& error) {
+    complain(error.what());
+    return kNotDelivered;
+  }
+  fmt::print("written: {}\n", path);
+  return kSuccess;
+}
+
 }  // namespace
 
 void add_scenes(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<ScenesCall>();
   CLI::App& scenes = *app.add_subcommand("scenes", "List the scenes, or describe one.");
-  scenes.add_option("SCENE", options->scene, "describe only this one")->type_name("");
+  scenes.add_option("SCENE", options->scene, "describe only this one; or new")->type_name("");
+  scenes.add_option("NAME", options->name, "what the new scene is called")->type_name("");
+  scenes.add_flag("--text", options->text, "print the scene as text");
   add_table_options(scenes, options->destination);
   scenes.footer(kScenesFooter);
   scenes.callback([options, &invocation] {
+    if (options->scene == "new") {
+      invocation.exit_status = write_new_scene(options->name);
+      return;
+    }
+    if (!options->name.empty()) {
+      refuse("NAME", options->name, "only 'carnot scenes new NAME' takes one", "one scene");
+    }
+    if (options->text) {
+      if (options->scene.empty()) refuse_missing("SCENE", "a scene for --text");
+      fmt::print("{}", text_of_scene(options->scene));
+      invocation.exit_status = kSuccess;
+      return;
+    }
     const SceneEntry* one = options->scene.empty() ? nullptr : &find_scene(options->scene);
     check_table_output(options->destination);
     Json list = Json::array();

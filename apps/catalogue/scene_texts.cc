@@ -1,0 +1,64 @@
+#include "catalogue/scene_texts.h"
+
+#include <fmt/format.h>
+
+#include "carnot/load_scene.h"
+#include "catalogue/scene_choice.h"
+#include "text/numbers.h"
+
+namespace carnot::apps {
+
+std::string text_of_scene(const std::string& scene) {
+  if (is_scene_file(scene)) return load_scene(scene).text();
+  (void)find_scene(scene);  // refuses unknown names
+  std::vector<std::string_view> names;
+  for (const SceneText& known : scene_texts()) {
+    if (known.name == scene) return std::string(known.text);
+    names.push_back(known.name);
+  }
+  refuse("--text",
+         scene,
+         "holonomic constraints are not part of the language",
+         fmt::format("{}", fmt::join(names, ", ")));
+}
+
+std::string new_scene_text(const std::string& name) {
+  constexpr std::string_view kText =
+      R"(# NAME.scene: a car that is driven and steered (say here what yours is)
+#
+# One statement a line; docs/scene_language.md has all of them. Try
+#   carnot scenes NAME.scene
+#   carnot geodesic NAME.scene --from 0,0,0,0 --to 0,1,0,0 --plot NAME.png
+
+# The configuration. A unit holds for the names before it; angles have the period 2 pi.
+coordinates x, y [length], theta, delta [angle]
+period delta = none
+
+# Name, default, unit, range; --set wheelbase=2 changes one.
+parameters wheelbase = 1 [length] > 0 "distance between the axles"
+parameters steering = 0.5 [length^2] > 0 "what turning the wheels costs"
+
+# What a path makes stationary: x' is the velocity of x.
+kinetic = (x'^2 + y'^2 + steering delta'^2) / 2
+
+# What velocities obey.
+0 = x' sin(theta) - y' cos(theta)
+0 = x' sin(theta + delta) - y' cos(theta + delta) - wheelbase cos(delta) theta'
+
+# How it is drawn, and what is reported of a path: the largest absolute value.
+let fx = x + wheelbase cos(theta)
+let fy = y + wheelbase sin(theta)
+draw (x, y) -- (fx, fy)
+draw wheel((x, y), theta, wheelbase / 6)
+draw wheel((fx, fy), theta + delta, wheelbase / 6)
+report steering_angle [angle] = delta
+)";
+  std::string text(kText);
+  for (std::size_t at = text.find("NAME"); at != std::string::npos; at = text.find("NAME", at)) {
+    text.replace(at, 4, name);
+    at += name.size();
+  }
+  return text;
+}
+
+}  // namespace carnot::apps
