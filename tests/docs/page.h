@@ -78,7 +78,7 @@ inline std::vector<Quotation> quotations(const std::string& page) {
   static const std::regex kMarker("<!-- (from )?(\\S+) -->");
   std::vector<Quotation> list;
   for (const Block& block : blocks(page)) {
-    if (block.language != "cpp") continue;
+    if (block.language != "cpp" && block.language != "scene") continue;
     std::smatch match;
     const bool marked = std::regex_match(block.before, match, kMarker);
     list.push_back({marked ? match[2].str() : "", marked && !match[1].matched, block.text});

@@ -2,7 +2,7 @@
 // code that they quote is that of files which are compiled, and their links lead somewhere.
 //
 // The commands of a page run by sh in one empty directory, with the built program as `carnot` and
-// as scripts/run.sh, and the programs of docs/examples as ./coin and so on.
+// as scripts/run.sh, the programs of docs/examples as ./coin and so on, and the scenes beside them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -57,6 +57,9 @@ class Workplace {
     fs::create_symlink(CARNOT_PROGRAM, root_ / "work" / "scripts" / "run.sh");
     for (const auto& entry : fs::directory_iterator(EXAMPLES_DIR)) {
       fs::create_symlink(entry.path(), root_ / "work" / entry.path().filename());
+    }
+    for (const fs::path& scene : files_in(kProject / "docs" / "examples" / "scenes", ".scene")) {
+      fs::create_symlink(scene, root_ / "work" / scene.filename());
     }
   }
   ~Workplace() {
