@@ -16,6 +16,7 @@
 #include "benchmark/benchmark_energy_report.h"
 #include "benchmark/benchmark_report.h"
 #include "benchmark/benchmark_rows.h"
+#include "carnot/language/nearest.h"
 #include "carnot/plots/plot_file.h"
 #include "run/delivery.h"
 #include "run/laboratory.h"
@@ -26,7 +27,6 @@
 #ifdef CARNOT_PEERS
 #include "benchmark/peers/boundary_peers.h"
 #include "benchmark/peers/peers.h"
-#include "carnot/language/nearest.h"
 #endif
 
 namespace carnot::apps {

@@ -32,10 +32,15 @@ struct TextParameter {
 // A scene that was read: its text, and what was made of it. Copies are cheap and share it.
 class TextScene {
  public:
+  // Names, units, periods, symmetries (those that were found), drawing and reports.
   [[nodiscard]] const SceneInfo& info() const;
+  // In the order of the text, with the values that this scene has.
   [[nodiscard]] const std::vector<TextParameter>& parameters() const;
+  // The number of coordinates, n.
   [[nodiscard]] int dof() const;
+  // The number of multipliers, k.
   [[nodiscard]] int multipliers() const;
+  // What was read.
   [[nodiscard]] const std::string& text() const;
   // The same scene with other values of some parameters. Throws std::invalid_argument for one that
   // it does not have, and for values out of range. Costs as much as reading it.

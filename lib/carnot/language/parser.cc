@@ -102,11 +102,11 @@ class Parser {
     if (scene_.coordinates.empty()) {
       fail({1, 1}, "there are no coordinates; accepted: a line such as coordinates x, y [length]");
     }
-    for (const auto& [setting, value] : settings_) {
+    for (const auto& setting : settings_) {
       const bool known = std::any_of(scene_.parameters.begin(),
                                      scene_.parameters.end(),
-                                     [&](const auto& p) { return p.name == setting; });
-      if (!known) throw std::invalid_argument("there is no parameter " + setting);
+                                     [&](const auto& p) { return p.name == setting.first; });
+      if (!known) throw std::invalid_argument("there is no parameter " + setting.first);
     }
     return std::move(scene_);
   }

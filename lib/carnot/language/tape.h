@@ -99,7 +99,7 @@ class Tape {
     double constant;
   };
   struct Instruction {
-    const void* handler = nullptr;
+    void (*handler)() = nullptr;  // a TapeMachine::Handler
     std::array<Operand, 3> operands{};
     std::uint32_t to = 0;
     std::uint32_t second = 0;

@@ -29,10 +29,12 @@ struct TapeMachine {
   using Instruction = Tape::Instruction;
   using Where = TapeOperand::Where;
 #ifdef CARNOT_TAIL_CALLS
-  using Handler = void (*)(const Instruction*, std::byte*, Register);
+  using Result = void;
 #else
-  using Handler = Register (*)(const Instruction*, std::byte*, Register);
+  using Result = Register;
 #endif
+  using Handler = Result (*)(const Instruction*, std::byte*, Register);
+  using AnyHandler = void (*)();
 
   template <Where where>
   [[gnu::always_inline]] static V load(const Tape::Operand& operand,
@@ -123,194 +125,191 @@ struct TapeMachine {
   };
 
   template <class F, Where a, Where b, Where c, bool stored>
+  static Result step(const Instruction* at, std::byte* memory, Register last) {
+    const V before = Ops::of(last);
+    const V result = F::compute(*at,
+                                memory,
+                                load<a>(at->operands[0], memory, before),
+                                load<b>(at->operands[1], memory, before),
+                                load<c>(at->operands[2], memory, before));
+    if constexpr (stored) store(result, memory + at->to);
 #ifdef CARNOT_TAIL_CALLS
-  static void step(const Instruction* at, std::byte* memory, Register last){
-#else
-  static Register step(const Instruction* at, std::byte* memory, Register last) {
-#endif
-      const V before = Ops::of(last);
-  const V result = F::compute(*at,
-                              memory,
-                              load<a>(at->operands[0], memory, before),
-                              load<b>(at->operands[1], memory, before),
-                              load<c>(at->operands[2], memory, before));
-  if constexpr (stored) store(result, memory + at->to);
-#ifdef CARNOT_TAIL_CALLS
-  return reinterpret_cast<Handler>(at[1].handler)(at + 1, memory, Ops::register_of(result));
+    return reinterpret_cast<Handler>(at[1].handler)(at + 1, memory, Ops::register_of(result));
 #else
     return Ops::register_of(result);
 #endif
-}
-
-// The handlers of an operation, by where its operands are: those that it does not have are
-// constants.
-template <class F, int operands>
-static const void* handler_of(const TapeStep& s) {
-  const auto pick = [&]<int i>(std::integral_constant<int, i>) {
-    constexpr Where a = static_cast<Where>(i % 3);
-    constexpr Where b = operands > 1 ? static_cast<Where>(i / 3 % 3) : Where::kConstant;
-    constexpr Where c = operands > 2 ? static_cast<Where>(i / 9 % 3) : Where::kConstant;
-    return s.stored ? &step<F, a, b, c, true> : &step<F, a, b, c, false>;
-  };
-  constexpr int kCases = operands == 1 ? 3 : operands == 2 ? 9 : 27;
-  const auto index = static_cast<int>(s.a.where) +
-                     (operands > 1 ? 3 * static_cast<int>(s.b.where) : 0) +
-                     (operands > 2 ? 9 * static_cast<int>(s.c.where) : 0);
-  Handler found = nullptr;
-  [&]<int... i>(std::integer_sequence<int, i...>) {
-    ((i == index ? void(found = pick(std::integral_constant<int, i>{})) : void()), ...);
   }
-  (std::make_integer_sequence<int, kCases>{});
-  return reinterpret_cast<const void*>(found);
-}
 
-static const void* stumpff_handler(const TapeStep& s) {
-  const void* found = nullptr;
-  [&]<int... k>(std::integer_sequence<int, k...>) {
-    ((k == s.index ? void(found = handler_of<Stumpff<k>, 1>(s)) : void()), ...);
+  // The handlers of an operation, by where its operands are: those that it does not have are
+  // constants.
+  template <class F, int operands>
+  static AnyHandler handler_of(const TapeStep& s) {
+    const auto pick = [&]<int i>(std::integral_constant<int, i>) {
+      constexpr Where a = static_cast<Where>(i % 3);
+      constexpr Where b = operands > 1 ? static_cast<Where>(i / 3 % 3) : Where::kConstant;
+      constexpr Where c = operands > 2 ? static_cast<Where>(i / 9 % 3) : Where::kConstant;
+      return s.stored ? &step<F, a, b, c, true> : &step<F, a, b, c, false>;
+    };
+    constexpr int kCases = operands == 1 ? 3 : operands == 2 ? 9 : 27;
+    const auto index = static_cast<int>(s.a.where) +
+                       (operands > 1 ? 3 * static_cast<int>(s.b.where) : 0) +
+                       (operands > 2 ? 9 * static_cast<int>(s.c.where) : 0);
+    Handler found = nullptr;
+    [&]<int... i>(std::integer_sequence<int, i...>) {
+      ((i == index ? void(found = pick(std::integral_constant<int, i>{})) : void()), ...);
+    }
+    (std::make_integer_sequence<int, kCases>{});
+    return reinterpret_cast<AnyHandler>(found);
   }
-  (std::make_integer_sequence<int, kMostStumpff + 1>{});
-  return found;
-}
 
-static const void* function_handler(const TapeStep& s) {
-  switch (s.function) {
-    case Operation::kStumpff:
-      return stumpff_handler(s);
-    case Operation::kExp:
-      return handler_of<Function<Operation::kExp>, 1>(s);
-    case Operation::kLog:
-      return handler_of<Function<Operation::kLog>, 1>(s);
-    case Operation::kSinh:
-      return handler_of<Function<Operation::kSinh>, 1>(s);
-    case Operation::kCosh:
-      return handler_of<Function<Operation::kCosh>, 1>(s);
-    case Operation::kTanh:
-      return handler_of<Function<Operation::kTanh>, 1>(s);
-    case Operation::kAsin:
-      return handler_of<Function<Operation::kAsin>, 1>(s);
-    case Operation::kAcos:
-      return handler_of<Function<Operation::kAcos>, 1>(s);
-    default:
-      return handler_of<Function<Operation::kAtan>, 1>(s);
+  static AnyHandler stumpff_handler(const TapeStep& s) {
+    AnyHandler found = nullptr;
+    [&]<int... k>(std::integer_sequence<int, k...>) {
+      ((k == s.index ? void(found = handler_of<Stumpff<k>, 1>(s)) : void()), ...);
+    }
+    (std::make_integer_sequence<int, kMostStumpff + 1>{});
+    return found;
   }
-}
 
-static const void* handler(const TapeStep& s) {
-  using O = TapeOperation;
-  switch (s.operation) {
-    case O::kAdd:
-      return handler_of<Arithmetic<O::kAdd>, 2>(s);
-    case O::kSubtract:
-      return handler_of<Arithmetic<O::kSubtract>, 2>(s);
-    case O::kMultiply:
-      return handler_of<Arithmetic<O::kMultiply>, 2>(s);
-    case O::kDivide:
-      return handler_of<Arithmetic<O::kDivide>, 2>(s);
-    case O::kFused:
-      return handler_of<Arithmetic<O::kFused>, 3>(s);
-    case O::kNegated:
-      return handler_of<Arithmetic<O::kNegated>, 3>(s);
-    case O::kCopy:
-      return handler_of<Arithmetic<O::kCopy>, 1>(s);
-    case O::kSqrt:
-      return handler_of<Arithmetic<O::kSqrt>, 1>(s);
-    case O::kSin:
-      return handler_of<Circular<O::kSin>, 1>(s);
-    case O::kCos:
-      return handler_of<Circular<O::kCos>, 1>(s);
-    case O::kSinCos:
-      return handler_of<Circular<O::kSinCos>, 1>(s);
-    case O::kAtan2:
-      return handler_of<Atan2, 2>(s);
-    default:
-      return function_handler(s);
+  static AnyHandler function_handler(const TapeStep& s) {
+    switch (s.function) {
+      case Operation::kStumpff:
+        return stumpff_handler(s);
+      case Operation::kExp:
+        return handler_of<Function<Operation::kExp>, 1>(s);
+      case Operation::kLog:
+        return handler_of<Function<Operation::kLog>, 1>(s);
+      case Operation::kSinh:
+        return handler_of<Function<Operation::kSinh>, 1>(s);
+      case Operation::kCosh:
+        return handler_of<Function<Operation::kCosh>, 1>(s);
+      case Operation::kTanh:
+        return handler_of<Function<Operation::kTanh>, 1>(s);
+      case Operation::kAsin:
+        return handler_of<Function<Operation::kAsin>, 1>(s);
+      case Operation::kAcos:
+        return handler_of<Function<Operation::kAcos>, 1>(s);
+      default:
+        return handler_of<Function<Operation::kAtan>, 1>(s);
+    }
   }
-}
+
+  static AnyHandler handler(const TapeStep& s) {
+    using O = TapeOperation;
+    switch (s.operation) {
+      case O::kAdd:
+        return handler_of<Arithmetic<O::kAdd>, 2>(s);
+      case O::kSubtract:
+        return handler_of<Arithmetic<O::kSubtract>, 2>(s);
+      case O::kMultiply:
+        return handler_of<Arithmetic<O::kMultiply>, 2>(s);
+      case O::kDivide:
+        return handler_of<Arithmetic<O::kDivide>, 2>(s);
+      case O::kFused:
+        return handler_of<Arithmetic<O::kFused>, 3>(s);
+      case O::kNegated:
+        return handler_of<Arithmetic<O::kNegated>, 3>(s);
+      case O::kCopy:
+        return handler_of<Arithmetic<O::kCopy>, 1>(s);
+      case O::kSqrt:
+        return handler_of<Arithmetic<O::kSqrt>, 1>(s);
+      case O::kSin:
+        return handler_of<Circular<O::kSin>, 1>(s);
+      case O::kCos:
+        return handler_of<Circular<O::kCos>, 1>(s);
+      case O::kSinCos:
+        return handler_of<Circular<O::kSinCos>, 1>(s);
+      case O::kAtan2:
+        return handler_of<Atan2, 2>(s);
+      default:
+        return function_handler(s);
+    }
+  }
 
 #ifdef CARNOT_TAIL_CALLS
-static void stop(const Instruction*, std::byte*, Register) {}
+  static void stop(const Instruction*, std::byte*, Register) {}
 #endif
 
-static std::vector<Instruction> bind(const Tape& tape) {
-  std::vector<Instruction> code;
-  code.reserve(tape.steps_.size() + 1);
-  for (const TapeStep& s : tape.steps_) {
-    Instruction instruction;
-    instruction.handler = handler(s);
-    const std::array operands{s.a, s.b, s.c};
-    for (std::size_t i = 0; i < operands.size(); ++i) {
-      if (operands[i].where == Where::kSlot) {
-        instruction.operands[i].slot = operands[i].slot * sizeof(Register);
-      } else {
-        instruction.operands[i].constant = operands[i].constant;
+  static std::vector<Instruction> bind(const Tape& tape) {
+    std::vector<Instruction> code;
+    code.reserve(tape.steps_.size() + 1);
+    for (const TapeStep& s : tape.steps_) {
+      Instruction instruction;
+      instruction.handler = handler(s);
+      const std::array operands{s.a, s.b, s.c};
+      for (std::size_t i = 0; i < operands.size(); ++i) {
+        if (operands[i].where == Where::kSlot) {
+          instruction.operands[i].slot = operands[i].slot * sizeof(Register);
+        } else {
+          instruction.operands[i].constant = operands[i].constant;
+        }
       }
+      instruction.to = s.to * sizeof(Register);
+      instruction.second = s.second * sizeof(Register);
+      code.push_back(instruction);
     }
-    instruction.to = s.to * sizeof(Register);
-    instruction.second = s.second * sizeof(Register);
-    code.push_back(instruction);
-  }
-  code.emplace_back();
+    code.emplace_back();
 #ifdef CARNOT_TAIL_CALLS
-  code.back().handler = reinterpret_cast<const void*>(&stop);
+    code.back().handler = reinterpret_cast<AnyHandler>(&stop);
 #endif
-  return code;
-}
-
-// At `lanes` points side by side, in rows of as many numbers. Whether all results are finite.
-template <int lanes>
-static bool run(const Tape& tape,
-                const std::vector<Instruction>& code,
-                std::span<const double* const> in,
-                std::span<double* const> out) {
-  constexpr std::size_t kSmall = 16384;  // bytes that a call may take of the stack
-  alignas(64) std::array<std::byte, kSmall> small;
-  const std::size_t bytes = tape.slots_ * sizeof(Register);
-  std::byte* const memory = bytes <= kSmall ? small.data() : tape_memory(bytes);
-  // Two sums, so that the additions need not wait for each other.
-  V even(0.0);
-  V odd(0.0);
-  for (int first = 0; first < lanes; first += Ops::kSize) {
-    for (const Tape::Run& rows : tape.in_) {
-      const double* from = in[rows.group] + rows.row * lanes + first;
-      std::byte* to = memory + rows.slot * sizeof(Register);
-      for (std::uint32_t i = 0; i < rows.count; ++i, from += lanes, to += sizeof(Register)) {
-        store(Ops::load(from), to);
-      }
-    }
-    execute(code.data(), memory);
-    for (std::size_t group = 0; group < tape.out_.size(); ++group) {
-      if (out[group] == nullptr) continue;
-      double* to = out[group] + first;
-      const std::uint32_t* slot = tape.out_[group].data();
-      const std::uint32_t* const end = slot + tape.out_[group].size();
-      const auto copy = [&](V& finite) {
-        const V x = Ops::of(*reinterpret_cast<const Register*>(memory + *slot * sizeof(Register)));
-        Ops::store(x, to);
-        finite += V(0.0) * x;
-        to += lanes;
-        ++slot;
-      };
-      while (slot + 1 < end) {
-        copy(even);
-        copy(odd);
-      }
-      if (slot < end) copy(even);
-    }
+    return code;
   }
-  return Ops::all(even + odd == V(0.0));
-}
 
-static void execute(const Instruction* at, std::byte* memory) {
-  Register last{};
+  // At `lanes` points side by side, in rows of as many numbers. Whether all results are finite.
+  template <int lanes>
+  static bool run(const Tape& tape,
+                  const std::vector<Instruction>& code,
+                  std::span<const double* const> in,
+                  std::span<double* const> out) {
+    constexpr std::size_t kSmall = 16384;  // bytes that a call may take of the stack
+    alignas(64) std::array<std::byte, kSmall> small;
+    const std::size_t bytes = tape.slots_ * sizeof(Register);
+    std::byte* const memory = bytes <= kSmall ? small.data() : tape_memory(bytes);
+    // Two sums, so that the additions need not wait for each other.
+    V even(0.0);
+    V odd(0.0);
+    for (int first = 0; first < lanes; first += Ops::kSize) {
+      for (const Tape::Run& rows : tape.in_) {
+        const double* from = in[rows.group] + rows.row * lanes + first;
+        std::byte* to = memory + rows.slot * sizeof(Register);
+        for (std::uint32_t i = 0; i < rows.count; ++i, from += lanes, to += sizeof(Register)) {
+          store(Ops::load(from), to);
+        }
+      }
+      execute(code.data(), memory);
+      for (std::size_t group = 0; group < tape.out_.size(); ++group) {
+        if (out[group] == nullptr || tape.out_[group].empty()) continue;
+        double* to = out[group] + first;
+        const std::uint32_t* slot = tape.out_[group].data();
+        const std::uint32_t* const end = slot + tape.out_[group].size();
+        const auto copy = [&](V& finite) {
+          const V x =
+              Ops::of(*reinterpret_cast<const Register*>(memory + *slot * sizeof(Register)));
+          Ops::store(x, to);
+          finite += V(0.0) * x;
+          to += lanes;
+          ++slot;
+        };
+        while (slot + 1 < end) {
+          copy(even);
+          copy(odd);
+        }
+        if (slot < end) copy(even);
+      }
+    }
+    return Ops::all(even + odd == V(0.0));
+  }
+
+  static void execute(const Instruction* at, std::byte* memory) {
+    Register last{};
 #ifdef CARNOT_TAIL_CALLS
-  reinterpret_cast<Handler>(at->handler)(at, memory, last);
+    reinterpret_cast<Handler>(at->handler)(at, memory, last);
 #else
     for (; at->handler != nullptr; ++at) {
       last = reinterpret_cast<Handler>(at->handler)(at, memory, last);
     }
 #endif
-}
+  }
 };  // namespace carnot::language
 
 }  // namespace carnot::language
