@@ -8,6 +8,7 @@
 
 #include "carnot/language/nearest.h"
 #include "carnot/load_scene.h"
+#include "carnot/tableau/methods.h"
 #include "text/numbers.h"
 
 namespace carnot::apps {
@@ -21,7 +22,10 @@ SceneEntry text_entry(const TextScene& scene) {
   for (const TextParameter& p : scene.parameters()) {
     entry.parameters.push_back({p.name, p.default_value, p.unit, p.range, p.meaning});
   }
-  entry.suits = [](const Method&) { return true; };
+  entry.holonomic = scene.holonomic();
+  entry.suits = [held = scene.holonomic() > 0](const Method& method) {
+    return !held || method.family != kRattleFamily;
+  };
   entry.make = [scene](const ParameterValues& values, const std::string& method) {
     const bool same = std::all_of(
         scene.parameters().begin(), scene.parameters().end(), [&](const TextParameter& p) {

@@ -18,7 +18,7 @@ std::string text_of_scene(const std::string& scene) {
   }
   refuse("--text",
          scene,
-         "holonomic constraints are not part of the language",
+         "this scene has no text",
          fmt::format("{}", fmt::join(names, ", ")));
 }
 

@@ -40,7 +40,9 @@ Dynamics TextScene::Impl::bind() const {
   dynamics.system = bound;
   dynamics.functions = &system->functions;
   dynamics.calls = system->calls;
-  if (system->transcribed > 0 || system->metric) {
+  dynamics.holonomic = system->holonomic_count;
+  dynamics.forced = system->holonomic_count;
+  if (system->has_transcription) {
     dynamics.transcription = &system->transcription;
     dynamics.transcribed = system->transcribed;
   }
@@ -79,6 +81,7 @@ const SceneInfo& TextScene::info() const { return impl_->info; }
 const std::vector<TextParameter>& TextScene::parameters() const { return impl_->parameters; }
 int TextScene::dof() const { return impl_->system->dof; }
 int TextScene::multipliers() const { return impl_->system->multipliers; }
+int TextScene::holonomic() const { return impl_->system->holonomic_count; }
 const std::string& TextScene::text() const { return impl_->text; }
 
 TextScene TextScene::with(const std::map<std::string, double>& values) const {
@@ -115,6 +118,11 @@ Dynamics make_dynamics(const TextScene& scene, std::string_view name) {
   const Method* const method = find_method(name);
   if (method == nullptr) {
     throw std::invalid_argument("method " + std::string(name) + ": there is none of that name");
+  }
+  if (scene.holonomic() > 0 && method->family == kRattleFamily) {
+    throw std::invalid_argument("method " + std::string(name) +
+                                ": holonomic constraints from text are kept as Dh q' = 0, by the "
+                                "other methods");
   }
   Dynamics dynamics = scene.impl_->bind();
   dynamics.method = method->name;

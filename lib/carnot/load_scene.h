@@ -40,6 +40,8 @@ class TextScene {
   [[nodiscard]] int dof() const;
   // The number of multipliers, k.
   [[nodiscard]] int multipliers() const;
+  // The number of holonomic constraints.
+  [[nodiscard]] int holonomic() const;
   // What was read.
   [[nodiscard]] const std::string& text() const;
   // The same scene with other values of some parameters. Throws std::invalid_argument for one that

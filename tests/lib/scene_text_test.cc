@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"two_kinetics", with("kinetic = x'^2"), "4:1", "given twice"},
         Case{"default_out_of_range", "parameters k = -1 > 0\n", "1:12", "out of its range"},
         Case{"no_equation", with("x' sin(theta)"), "4:14", "'=' in an equation"},
-        Case{"holonomic", with("0 = x - y"), "4:1", "holonomic"},
+        Case{"no_coordinates", with("0 = 3"), "4:1", "no coordinates"},
         Case{"time", with("0 = x' - t y'"), "4:1", "depends on t"},
         Case{"not_linear", with("0 = x'^2 - y'"), "4:1", "not linear in the velocities"},
         Case{"too_many_rows", with("0 = x'\n0 = y'"), "5:1", "nothing free"},

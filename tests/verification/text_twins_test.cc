@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,12 +24,26 @@ constexpr double kEps = std::numeric_limits<double>::epsilon();
 // up to ten at these points: measured up to 12 eps.
 constexpr double kRoundOff = 100 * kEps;
 
-std::vector<std::string> names() {
+TextScene text_of(const std::string& name) {
+  return load_scene(CARNOT_SOURCE_DIR "/lib/carnot/scenes/" + name + ".scene");
+}
+
+enum class Which { kAll, kFree, kHolonomic };
+std::vector<std::string> names(Which which) {
   std::vector<std::string> result;
   for (const SceneEntry& entry : apps::scene_registry()) {
-    if (entry.holonomic == 0) result.push_back(entry.info.name);
+    const bool held = entry.holonomic > 0;
+    if (which == Which::kAll || held == (which == Which::kHolonomic)) {
+      result.push_back(entry.info.name);
+    }
   }
   return result;
+}
+
+std::string test_name(const ::testing::TestParamInfo<std::string>& scene) {
+  std::string name = scene.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
 }
 
 double largest(const std::vector<double>& x) {
@@ -43,11 +58,42 @@ double distance(const std::vector<double>& a, const std::vector<double>& b) {
   return largest(d);
 }
 
+class TextDescriptions : public ::testing::TestWithParam<std::string> {
+ protected:
+  const SceneEntry& entry_ = apps::find_scene(GetParam());
+  TextScene scene_ = text_of(GetParam());
+};
+
+TEST_P(TextDescriptions, AreThoseOfTheTwin) {
+  const SceneInfo& text = scene_.info();
+  const SceneInfo& twin = entry_.info;
+  EXPECT_EQ(text.name, twin.name);
+  EXPECT_EQ(text.summary, twin.summary);
+  EXPECT_EQ(text.kind, twin.kind);
+  EXPECT_EQ(text.reference, twin.reference);
+  EXPECT_EQ(scene_.dof(), entry_.dof);
+  EXPECT_EQ(scene_.multipliers(), entry_.multipliers);
+  ASSERT_EQ(text.configuration.size(), twin.configuration.size());
+  for (std::size_t i = 0; i < twin.configuration.size(); ++i) {
+    EXPECT_EQ(text.configuration[i].name, twin.configuration[i].name);
+    EXPECT_EQ(text.configuration[i].unit, twin.configuration[i].unit);
+    EXPECT_EQ(text.configuration[i].period, twin.configuration[i].period);
+  }
+  ASSERT_EQ(scene_.parameters().size(), entry_.parameters.size());
+  for (std::size_t i = 0; i < entry_.parameters.size(); ++i) {
+    EXPECT_EQ(scene_.parameters()[i].name, entry_.parameters[i].name);
+    EXPECT_EQ(scene_.parameters()[i].default_value, entry_.parameters[i].default_value);
+    EXPECT_EQ(scene_.parameters()[i].unit, entry_.parameters[i].unit);
+    EXPECT_EQ(scene_.parameters()[i].range.text(), entry_.parameters[i].range.text());
+  }
+  EXPECT_EQ(scene_.holonomic(), entry_.holonomic);
+}
+
 class TextTwins : public ::testing::TestWithParam<std::string> {
  protected:
   TextTwins()
       : entry_(apps::find_scene(GetParam())),
-        scene_(load_scene(CARNOT_SOURCE_DIR "/lib/carnot/scenes/" + GetParam() + ".scene")),
+        scene_(text_of(GetParam())),
         text_(make_dynamics(scene_)),
         twin_(entry_.make({}, "gauss16")) {}
 
@@ -93,34 +139,6 @@ class TextTwins : public ::testing::TestWithParam<std::string> {
   std::mt19937_64 bits_{3};
 };
 
-TEST_P(TextTwins, SaysTheSameOfItself) {
-  const SceneInfo& text = scene_.info();
-  const SceneInfo& twin = entry_.info;
-  EXPECT_EQ(text.name, twin.name);
-  EXPECT_EQ(text.summary, twin.summary);
-  EXPECT_EQ(text.kind, twin.kind);
-  EXPECT_EQ(text.reference, twin.reference);
-  EXPECT_EQ(scene_.dof(), entry_.dof);
-  EXPECT_EQ(scene_.multipliers(), entry_.multipliers);
-  ASSERT_EQ(text.configuration.size(), twin.configuration.size());
-  for (std::size_t i = 0; i < twin.configuration.size(); ++i) {
-    EXPECT_EQ(text.configuration[i].name, twin.configuration[i].name);
-    EXPECT_EQ(text.configuration[i].unit, twin.configuration[i].unit);
-    EXPECT_EQ(text.configuration[i].period, twin.configuration[i].period);
-  }
-  ASSERT_EQ(scene_.parameters().size(), entry_.parameters.size());
-  for (std::size_t i = 0; i < entry_.parameters.size(); ++i) {
-    EXPECT_EQ(scene_.parameters()[i].name, entry_.parameters[i].name);
-    EXPECT_EQ(scene_.parameters()[i].default_value, entry_.parameters[i].default_value);
-    EXPECT_EQ(scene_.parameters()[i].unit, entry_.parameters[i].unit);
-    EXPECT_EQ(scene_.parameters()[i].range.text(), entry_.parameters[i].range.text());
-  }
-  EXPECT_EQ(text_.autonomous, twin_.autonomous);
-  EXPECT_EQ(text_.transcribed, twin_.transcribed);
-  EXPECT_EQ(text_.has_transcription(), twin_.has_transcription());
-  EXPECT_EQ(text_.has_branches(), twin_.has_branches());
-}
-
 // Those that the twin names are found; there may be more.
 TEST_P(TextTwins, FindsTheSymmetries) {
   const Symmetries& found = scene_.info().symmetries;
@@ -140,6 +158,9 @@ TEST_P(TextTwins, FindsTheSymmetries) {
 }
 
 TEST_P(TextTwins, AgreesAtRandomPoints) {
+  EXPECT_EQ(text_.autonomous, twin_.autonomous);
+  EXPECT_EQ(text_.transcribed, twin_.transcribed);
+  EXPECT_EQ(text_.has_branches(), twin_.has_branches());
   constexpr int kPoints = 50;
   int other_branch = 0;
   for (int i = 0; i < kPoints; ++i) {
@@ -249,11 +270,94 @@ TEST_P(TextTwins, MeasuresAlike) {
   EXPECT_LE(text.constraint_error, 1e-13);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, TextTwins, ::testing::ValuesIn(names()), [](const auto& scene) {
-  std::string name = scene.param;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-});
+// Holonomic constraints are kept as Dh q' = 0 here, by RATTLE there: the same paths, of momenta
+// that differ along Dh.
+class HolonomicTwins : public ::testing::TestWithParam<std::string> {
+ protected:
+  // A point of the manifold and an admissible velocity there, all of them about one.
+  static std::vector<double> start(const Dynamics& d) {
+    const int n = d.dof;
+    std::vector<double> z(static_cast<std::size_t>(2 * n));
+    for (int i = 0; i < n; ++i) z[i] = 0.8 * std::cos(1.3 * i * i + 0.2);
+    EXPECT_TRUE(d.project_on_manifold(0, z));
+    std::vector<double> v(static_cast<std::size_t>(n));
+    for (int i = 0; i < n; ++i) v[i] = 0.5 * std::sin(1.7 * i + 0.4);
+    const std::vector<double> lambda(static_cast<std::size_t>(d.multipliers), 0.1);
+    const std::span<double> all(z);
+    EXPECT_FALSE(std::isnan(d.momentum(0, all.first(n), v, lambda, all.subspan(n))));
+    return z;
+  }
+};
+
+TEST_P(HolonomicTwins, TakeTheSamePaths) {
+  const Dynamics text = make_dynamics(text_of(GetParam()));
+  const SceneEntry& entry = apps::find_scene(GetParam());
+  const Dynamics twin = entry.make({}, "rattle6");
+  ASSERT_EQ(text.dof, twin.dof);
+  const int n = text.dof;
+  std::vector<double> z = start(text);
+  std::vector<double> w = z;
+  ASSERT_TRUE(twin.project_on_manifold(0, w));
+  const FlowSummary run = text.monitored_flow(StepPlan::equal(0, 1, 50), z, {});
+  const FlowSummary expected = twin.monitored_flow(StepPlan::equal(0, 1, 1000), w, {});
+  ASSERT_TRUE(run.completed() && expected.completed());
+  constexpr double kTolerance = 1e-11;  // of a thousand steps of order six
+  z.resize(static_cast<std::size_t>(n));
+  w.resize(z.size());
+  EXPECT_LE(distance(z, w), kTolerance);
+  EXPECT_NEAR(run.action, expected.action, kTolerance * (1 + std::abs(expected.action)));
+  EXPECT_LE(run.holonomic_error, 1e-13);
+  EXPECT_LE(run.constraint_error, 1e-13);
+  EXPECT_LE(run.energy_drift, 1e-13);
+}
+
+// The nearest point of the manifold with the momentum that has no part along Dh, and a projector on
+// its tangent space.
+TEST_P(HolonomicTwins, ProjectOnTheManifold) {
+  const Dynamics d = make_dynamics(text_of(GetParam()));
+  const int n = d.dof;
+  std::vector<double> z = start(d);
+  ASSERT_TRUE(d.project_on_manifold(0, z));
+  EXPECT_LE(d.holonomic_residuals(0, z).position, 8 * kEps);
+  EXPECT_LE(d.holonomic_residuals(0, z).velocity, 64 * kEps);
+  std::vector<double> again = z;
+  ASSERT_TRUE(d.project_on_manifold(0, again));
+  EXPECT_LE(distance(z, again), 64 * kEps * (1 + largest(z)));
+  const std::size_t size = static_cast<std::size_t>(2 * n);
+  std::vector<double> p(size * size);
+  ASSERT_TRUE(d.tangent_projector(0, z, p));
+  double trace = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    trace += p[i * size + i];
+    for (std::size_t j = 0; j < size; ++j) {
+      double square = 0;
+      for (std::size_t k = 0; k < size; ++k) square += p[i * size + k] * p[k * size + j];
+      EXPECT_NEAR(square, p[i * size + j], kRoundOff);
+    }
+  }
+  EXPECT_NEAR(trace, 2 * (n - d.holonomic), kRoundOff);
+  // A small step along the manifold stays on it to second order.
+  std::vector<double> step(size);
+  for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t j = 0; j < size; ++j) step[i] += p[j * size + i] * std::cos(2.1 * j);
+  }
+  constexpr double kSmall = 1e-5;
+  std::vector<double> moved = z;
+  for (std::size_t i = 0; i < size; ++i) moved[i] += kSmall * step[i];
+  std::vector<double> back = moved;
+  ASSERT_TRUE(d.project_on_manifold(0, back));
+  EXPECT_LE(distance(moved, back), 1e3 * kSmall * kSmall);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes,
+                         TextDescriptions,
+                         ::testing::ValuesIn(names(Which::kAll)),
+                         test_name);
+INSTANTIATE_TEST_SUITE_P(Scenes, TextTwins, ::testing::ValuesIn(names(Which::kFree)), test_name);
+INSTANTIATE_TEST_SUITE_P(Scenes,
+                         HolonomicTwins,
+                         ::testing::ValuesIn(names(Which::kHolonomic)),
+                         test_name);
 
 }  // namespace
 }  // namespace carnot::text_twins_test

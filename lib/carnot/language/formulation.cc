@@ -143,16 +143,34 @@ class Formulator {
     return m;
   }
 
-  // Rows linear in the velocities.
+  // Without velocities: h(q) = 0, which is noted.
+  bool is_holonomic(const Formula& row) {
+    if (depends(row.expression, kVelocity)) return false;
+    if (depends(row.expression, kTime)) fail(row.place, "a holonomic constraint depends on t");
+    if (row.expression.is_constant()) fail(row.place, "this equation has no coordinates");
+    out_.holonomic.push_back(row.expression);
+    return true;
+  }
+
+  // Dh q'.
+  SymbolicVector hidden_constraints() {
+    return product(
+        graph_, jacobian(graph_, out_.holonomic, kConfiguration.first, scene_.dof()), velocities());
+  }
+
+  // The last of the multipliers are those of the holonomic constraints.
+  void part_holonomic(SymbolicVector& lambda) {
+    const auto l = static_cast<std::ptrdiff_t>(out_.holonomic.size());
+    out_.holonomic_forces.assign(lambda.end() - l, lambda.end());
+    lambda.erase(lambda.end() - l, lambda.end());
+  }
+
+  // Rows linear in the velocities, those that follow from holonomic constraints last.
   SymbolicMatrix linear_rows() {
     const int n = scene_.dof();
     SymbolicVector rows;
     for (const Formula& row : scene_.rows) {
-      if (!depends(row.expression, kVelocity)) {
-        fail(row.place,
-             "a constraint without velocities is holonomic, which scenes from text do "
-             "not have yet; write coordinates on which it holds");
-      }
+      if (is_holonomic(row)) continue;
       if (depends(row.expression, kTime)) {
         fail(row.place, "the constraint depends on t; accepted with lagrangian = ...");
       }
@@ -164,6 +182,8 @@ class Formulator {
       }
       rows.push_back(row.expression);
     }
+    out_.multipliers = static_cast<int>(rows.size());
+    for (const Expression& e : hidden_constraints()) rows.push_back(e);
     if (static_cast<int>(rows.size()) >= n) {
       fail(scene_.rows.back().place, "as many constraints as coordinates leave nothing free");
     }
@@ -177,7 +197,6 @@ class Formulator {
     const SymbolicMatrix m = mass();
     const SymbolicMatrix g = linear_rows();
     const int k = g.rows;
-    out_.multipliers = k;
     Expression potential = graph_.number(0);
     if (scene_.potential) {
       potential = scene_.potential->expression;
@@ -205,6 +224,10 @@ class Formulator {
       out_.checks = rank;
       definite(reduced, transposed_product(graph_, *frame, p), RateStatus::kMassNotPositive);
       multipliers(m, g, p, speed);
+      part_holonomic(out_.lambda);
+      for (Expression& mu : out_.holonomic_forces) {
+        mu = graph_.substitute(mu, kAlgebraic.first, out_.solution);
+      }
     } else {
       const SymbolicVector y = variables(kAlgebraic, n + k);
       const SymbolicVector speed(y.begin(), y.begin() + n);
@@ -216,14 +239,21 @@ class Formulator {
                                                    dot(graph_, lambda, product(graph_, g, speed))});
       saddle(m, g, p, SymbolicVector(static_cast<std::size_t>(k), graph_.number(0)));
       out_.lambda = lambda;
+      part_holonomic(out_.lambda);
+      out_.holonomic_forces.assign(
+          out_.solution.end() - static_cast<std::ptrdiff_t>(out_.holonomic.size()),
+          out_.solution.end());
     }
     out_.constraint = product(graph_, g, v);
     out_.square_speed = dot(graph_, v, product(graph_, m, v));
     project(g, out_.constraint);
-    const SymbolicVector force = variables(kMultiplier, k);
+    SymbolicVector force = variables(kMultiplier, out_.multipliers);
+    force.resize(static_cast<std::size_t>(k), graph_.number(0));
     out_.momentum = product(graph_, m, v);
     const SymbolicVector pushed = transposed_product(graph_, g, force);
     for (int i = 0; i < n; ++i) out_.momentum[i] = out_.momentum[i] - pushed[i];
+    // Of the constraints of a path's intervals one would follow from the others and the ends.
+    if (!out_.holonomic.empty()) return;
     const Expression l = graph_.sum(
         SymbolicVector{half_form(m, v), -potential, -dot(graph_, force, out_.constraint)});
     out_.transcription = TranscriptionFormulas{m, g, potential, false, l};
@@ -327,22 +357,19 @@ class Formulator {
     if (!scene_.controls.empty()) fail(scene_.lagrangian->place, "'lagrangian' beside controls");
     out_.kind = Formulation::Kind::kLagrangian;
     const int n = scene_.dof();
-    const int k = static_cast<int>(scene_.rows.size());
-    if (k >= n) fail(scene_.rows.back().place, "as many constraints as coordinates");
-    out_.multipliers = k;
-    out_.algebraic = n + k;
     const Expression l = scene_.lagrangian->expression;
     SymbolicVector g;
     out_.autonomous = !depends(l, kTime);
     for (const Formula& row : scene_.rows) {
-      if (!depends(row.expression, kVelocity)) {
-        fail(row.place,
-             "a constraint without velocities is holonomic, which scenes from text do "
-             "not have yet; write coordinates on which it holds");
-      }
+      if (is_holonomic(row)) continue;
       g.push_back(row.expression);
       out_.autonomous = out_.autonomous && !depends(row.expression, kTime);
     }
+    out_.multipliers = static_cast<int>(g.size());
+    for (const Expression& e : hidden_constraints()) g.push_back(e);
+    const int k = static_cast<int>(g.size());
+    if (k >= n) fail(scene_.rows.back().place, "as many constraints as coordinates");
+    out_.algebraic = n + k;
     const SymbolicVector y = variables(kAlgebraic, n + k);
     const SymbolicVector speed(y.begin(), y.begin() + n);
     const SymbolicVector lambda(y.begin() + n, y.end());
@@ -354,16 +381,23 @@ class Formulator {
     for (int i = 0; i < k; ++i) terms.push_back(lambda[i] * at_speed(g[i]));
     out_.hamiltonian = graph_.sum(terms);
     out_.lambda = lambda;
+    part_holonomic(out_.lambda);
     out_.constraint = g;
     const SymbolicVector v = velocities();
     const SymbolicVector slopes = gradient(graph_, l, kVelocity.first, n);
     const SymbolicMatrix m = jacobian(graph_, slopes, kVelocity.first, n);
     const SymbolicMatrix rows = jacobian(graph_, g, kVelocity.first, n);
-    const SymbolicVector force = variables(kMultiplier, k);
+    SymbolicVector force = variables(kMultiplier, out_.multipliers);
+    force.resize(static_cast<std::size_t>(k), graph_.number(0));
     out_.momentum = slopes;
     const SymbolicVector pushed = transposed_product(graph_, rows, force);
     for (int i = 0; i < n; ++i) out_.momentum[i] = out_.momentum[i] - pushed[i];
     out_.linear = !depends(m, kVelocity) && !depends(rows, kVelocity);
+    if (!out_.linear && !out_.holonomic.empty()) {
+      fail(scene_.lagrangian->place,
+           "holonomic constraints with a Lagrangian that is not quadratic "
+           "in the velocities; write coordinates on which they hold");
+    }
     if (!out_.linear) return;
     project(rows, g);
     SymbolicVector a;
@@ -371,6 +405,9 @@ class Formulator {
     for (int i = 0; i < n; ++i) a.push_back(p[i] - without(slopes[i], kVelocity));
     for (int i = 0; i < k; ++i) b.push_back(without(g[i], kVelocity));
     saddle(m, rows, a, b);
+    out_.holonomic_forces.assign(
+        out_.solution.end() - static_cast<std::ptrdiff_t>(out_.holonomic.size()),
+        out_.solution.end());
   }
 
   // ---- optimal control, H = p.f - l
@@ -567,7 +604,8 @@ class Formulator {
 std::string_view kind_text(const Formulation& formulation) {
   switch (formulation.kind) {
     case Formulation::Kind::kVelocityConstraints:
-      return "velocity constraints";
+      return formulation.holonomic.empty() ? "velocity constraints"
+                                           : "velocity + holonomic constraints";
     case Formulation::Kind::kLagrangian:
       return "Lagrangian";
     case Formulation::Kind::kOptimalControl:

@@ -13,6 +13,11 @@
 //
 //   frame     -H_yy = B'M B, Cholesky.
 //   controls  -H_uu = R, Cholesky.
+// A holonomic constraint h(q) = 0 is kept as the velocity constraint Dh q' = 0 that follows from
+// it, with multipliers mu: with h = 0 at the start the paths are the same, and H does not see
+// momenta along the rows of Dh. Of those that mean the same, the one with mu = 0 is taken: p +
+// Dh'mu.
+//
 //   saddle    y = (v, lambda), -H_yy = (M, -G'; -G, 0). With A = M + gamma G'G, which is positive
 //             definite where M is on ker G, (M x - G'mu, -G x) = (a, b) is solved by
 //             S mu = -b - G A^-1 r,  x = A^-1 (r + G'mu),  r = a - gamma G'b,  S = G A^-1 G'.
@@ -49,7 +54,7 @@ struct Formulation {
   Kind kind = Kind::kVelocityConstraints;
   int dof = 0;          // n
   int algebraic = 0;    // m
-  int multipliers = 0;  // k
+  int multipliers = 0;  // k, without those of holonomic constraints
   bool autonomous = true;
   bool linear = true;         // y is a formula
   Expression hamiltonian;     // of t, q, p, y
@@ -72,6 +77,8 @@ struct Formulation {
   SymbolicVector drift;
   std::optional<TranscriptionFormulas> transcription;
   std::optional<Expression> chart;  // of q
+  SymbolicVector holonomic;         // h of q; empty: none
+  SymbolicVector holonomic_forces;  // mu of t, q, p
   std::optional<DarbouxForm> darboux;
 };
 

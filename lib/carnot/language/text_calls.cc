@@ -9,6 +9,7 @@
 
 #include "carnot/language/text_newton.h"
 #include "carnot/numerics/jacobi_rotations.h"
+#include "carnot/numerics/round_off.h"
 #include "carnot/scene/chart.h"
 #include "carnot/system/packed_iteration.h"
 
@@ -292,6 +293,33 @@ void measure(const void* opaque,
   }
 }
 
+// max of |h| and |Dh v| over max(1, |v|), of which the first alone is the second's `position`.
+struct OffManifold {
+  double position = 0;
+  double velocity = 0;  // |Dh v|
+};
+
+OffManifold off_manifold(const TextSystem& s, const double& t, const double* q, const double* v) {
+  std::array<double, kMostDof> h;
+  std::array<double, kMostDof * kMostDof> dh;
+  s.holonomic.run(at(t, q, kIdle.data(), kIdle.data()),
+                  std::array<double*, 2>{h.data(), dh.data()});
+  OffManifold off;
+  for (int i = 0; i < s.holonomic_count; ++i) {
+    double rate = 0;
+    for (int j = 0; j < s.dof; ++j) rate += dh[i * s.dof + j] * v[j];
+    off.position = std::max(off.position, std::abs(h[i]));
+    off.velocity = std::max(off.velocity, std::abs(rate));
+  }
+  return off;
+}
+
+double largest(const double* x, int count) {
+  double most = 0;
+  for (int i = 0; i < count; ++i) most = std::max(most, std::abs(x[i]));
+  return most;
+}
+
 NodeMeasures measure_node(const void* opaque, double t, const double* z, double* y) {
   const TextSystem& s = system_of(opaque);
   NodeMeasures out;
@@ -303,6 +331,11 @@ NodeMeasures measure_node(const void* opaque, double t, const double* z, double*
   point[4] = z_dot.data();
   s.point.run(point, std::array<double*, 4>{&out.hamiltonian, nullptr, nullptr, g.data()});
   out.constraint = relative_constraint(s, g.data(), z_dot.data(), 1);
+  if (s.holonomic_count > 0) {
+    const OffManifold off = off_manifold(s, t, z, z_dot.data());
+    const double size = std::max(1.0, largest(z_dot.data(), s.dof));
+    out.holonomic = std::max(off.position, off.velocity / size);
+  }
   return out;
 }
 
@@ -674,6 +707,87 @@ std::shared_ptr<const void> on_branch(
   return other;
 }
 
+// ---- of holonomic constraints
+
+HolonomicResiduals holonomic_residuals(const void* opaque, double t, const double* z) {
+  const TextSystem& s = system_of(opaque);
+  std::vector<double> y = bound(opaque).branch;
+  std::array<double, 2 * kMostDof> z_dot{};
+  const bool moves = rate(opaque, t, z, y.data(), z_dot.data()) == RateStatus::kOk;
+  const OffManifold off = off_manifold(s, t, z, z_dot.data());
+  HolonomicResiduals residuals;
+  residuals.position = off.position;
+  if (moves) {
+    const double size = largest(z_dot.data(), s.dof);
+    residuals.velocity = size > 0 ? off.velocity / size : 0;
+  }
+  return residuals;
+}
+
+// q by Gauss-Newton steps of least norm, as project_configuration(); then p + Dh'mu.
+bool project_on_manifold(const void* opaque, double t, double* z) {
+  constexpr int kMaxIterations = 50;
+  const TextSystem& s = system_of(opaque);
+  const int n = s.dof;
+  const int l = s.holonomic_count;
+  Vector q = Eigen::Map<const Vector>(z, n);
+  Vector h(l);
+  Matrix columns(n, l);  // the rows of Dh, one after the other
+  const auto evaluate = [&] {
+    s.holonomic.run(at(t, q.data(), kIdle.data(), kIdle.data()),
+                    std::array<double*, 2>{h.data(), columns.data()});
+  };
+  double smallest = std::numeric_limits<double>::max();
+  bool found = false;
+  for (int iteration = 0; iteration < kMaxIterations && !found; ++iteration) {
+    evaluate();
+    const TextSquare gram = columns.transpose().lazyProduct(columns);
+    const TextEquations::Factor factor(gram);
+    if (!factor.regular()) return false;
+    const Vector correction = columns.lazyProduct(Vector(factor.solve(h)));
+    const double change = correction.cwiseAbs().maxCoeff();
+    const double resolution = std::numeric_limits<double>::epsilon() * q.cwiseAbs().maxCoeff();
+    found =
+        change <= resolution || (!(change < smallest) && change <= kStalledRoundOff * resolution);
+    smallest = std::min(smallest, change);
+    if (!found) q -= correction;
+  }
+  if (!found) return false;
+  std::copy_n(q.data(), n, z);
+  Vector mu(l);
+  if (!s.forces.run(at(s, t, z), std::array<double*, 2>{mu.data(), nullptr})) return false;
+  const Vector pushed = columns.lazyProduct(mu);
+  for (int i = 0; i < n; ++i) z[n + i] += pushed[i];
+  return true;
+}
+
+// I - A'(A A')^-1 A, where the rows of A are those of (Dh, 0) and of d mu/dz.
+bool tangent_projector(const void* opaque, double t, const double* z, double* projector) {
+  const TextSystem& s = system_of(opaque);
+  const int n = s.dof;
+  const int l = s.holonomic_count;
+  Vector h(l);
+  Matrix dh(n, l);
+  Vector mu(l);
+  Matrix slopes(2 * n, l);
+  s.holonomic.run(at(s, t, z), std::array<double*, 2>{h.data(), dh.data()});
+  if (!s.forces.run(at(s, t, z), std::array<double*, 2>{mu.data(), slopes.data()})) return false;
+  TextSquare gram(2 * l, 2 * l);
+  Matrix columns = Matrix::Zero(2 * n, 2 * l);
+  columns.topLeftCorner(n, l) = dh;
+  columns.rightCols(l) = slopes;
+  gram = columns.transpose().lazyProduct(columns);
+  const TextEquations::Factor factor(gram);
+  if (!factor.regular()) return false;
+  Eigen::Map<Matrix> p(projector, 2 * n, 2 * n);
+  p.setIdentity();
+  for (int i = 0; i < 2 * n; ++i) {
+    const Vector row = columns.row(i).transpose();
+    p.col(i) -= columns.lazyProduct(Vector(factor.solve(row)));
+  }
+  return p.allFinite();
+}
+
 // ---- of the transcription
 
 void entries(const void* opaque, const double* q, bool slopes, double* out) {
@@ -721,6 +835,11 @@ void connect_calls(TextSystem& system) {
   system.transcription = {system.dof, system.transcribed, false, entries, lagrangian_hessian};
   Dynamics::Calls& calls = system.calls;
   if (system.has_chart) calls.chart = chart;
+  if (system.holonomic_count > 0) {
+    calls.holonomic_residuals = holonomic_residuals;
+    calls.project_on_manifold = project_on_manifold;
+    calls.tangent_projector = tangent_projector;
+  }
   switch (system.kind) {
     case Formulation::Kind::kVelocityConstraints:
       calls.momentum = velocity_momentum;

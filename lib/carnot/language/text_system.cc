@@ -39,6 +39,7 @@ class TapeMaker {
     if (f_.kind == Formulation::Kind::kOptimalControl) controls();
     if (f_.kind == Formulation::Kind::kGeneralizedHamiltonian) transforms();
     if (f_.kind != Formulation::Kind::kVelocityConstraints) hessian();
+    if (!f_.holonomic.empty()) holonomic();
     if (f_.chart) system_.chart = tape({{*f_.chart}});
     if (f_.transcription) transcription(*f_.transcription);
   }
@@ -218,6 +219,16 @@ class TapeMaker {
     system_.held = stationary(graph_.sum(terms));
   }
 
+  void holonomic() {
+    const SymbolicMatrix dh = jacobian(graph_, f_.holonomic, kConfiguration.first, n_);
+    system_.holonomic = tape({f_.holonomic, dh.entries});
+    SymbolicVector slopes;
+    for (const Expression& mu : f_.holonomic_forces) {
+      for (const int z : z_) slopes.push_back(graph_.derivative(mu, z));
+    }
+    system_.forces = tape({f_.holonomic_forces, slopes});
+  }
+
   void transcription(const TranscriptionFormulas& t) {
     SymbolicVector entries;
     for (int i = 0; i < n_; ++i) {
@@ -264,7 +275,9 @@ TextSystem::TextSystem(const Formulation& formulation, Graph& graph)
       linear(formulation.linear),
       autonomous(formulation.autonomous),
       constraint_count(static_cast<int>(formulation.constraint.size())),
+      holonomic_count(static_cast<int>(formulation.holonomic.size())),
       metric(formulation.square_speed.has_value()),
+      has_transcription(formulation.transcription.has_value()),
       has_chart(formulation.chart.has_value()),
       has_guess(!formulation.guess.empty()) {
   if (kind == Formulation::Kind::kOptimalControl) controls_count = algebraic;

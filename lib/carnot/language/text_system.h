@@ -48,12 +48,16 @@ struct TextSystem {
   Tape legendre;  // of H - p.v: derivatives by x = (p, y), first and second
   Tape held;      // the same where y in H is lambda, with |y - lambda|^2/2
   Tape chart;
-  Tape entries;  // of the transcription
+  Tape holonomic;  // h, and Dh row by row
+  Tape forces;     // mu, and its derivatives by z row by row
+  Tape entries;    // of the transcription
   Tape slopes;
   Tape lagrangian_hessian;
   int controls_count = 0;
   int constraint_count = 0;
+  int holonomic_count = 0;
   bool metric = false;  // there is a speed
+  bool has_transcription = false;
   bool has_chart = false;
   bool has_guess = false;
 
