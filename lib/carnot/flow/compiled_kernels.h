@@ -21,5 +21,9 @@ KernelMaker make_kernel_5;
 KernelMaker make_kernel_6;
 KernelMaker make_kernel_7;
 KernelMaker make_kernel_8;
+KernelMaker make_kernel_9;
+KernelMaker make_kernel_10;
+KernelMaker make_kernel_11;
+KernelMaker make_kernel_12;
 
 }  // namespace carnot

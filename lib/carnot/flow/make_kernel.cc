@@ -18,7 +18,11 @@ Kernel make_kernel(const Method& method,
                                 make_kernel_5,
                                 make_kernel_6,
                                 make_kernel_7,
-                                make_kernel_8};
+                                make_kernel_8,
+                                make_kernel_9,
+                                make_kernel_10,
+                                make_kernel_11,
+                                make_kernel_12};
   static_assert(kKernels.size() == kMostCompiled);
   assert(1 <= functions.dof && functions.dof <= kMostCompiled);
   return kKernels[functions.dof - 1](make_tableau(method), periods, functions);

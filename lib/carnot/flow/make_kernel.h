@@ -10,7 +10,7 @@
 namespace carnot {
 
 // A scene with more coordinates compiles a kernel of its own.
-inline constexpr int kMostCompiled = 8;
+inline constexpr int kMostCompiled = 12;
 
 // The kernel of a Runge-Kutta method of methods() for systems reached through `functions`, which
 // must outlive it. `periods` of the n <= kMostCompiled coordinates, 0 where there is none. Costs

@@ -438,6 +438,10 @@ bool Tape::run(std::span<const double* const> in, std::span<double* const> out) 
   return TapeMachine<double>::run<1>(*this, single_, in, out);
 }
 
+void Tape::execute(std::byte* memory) const {
+  TapeMachine<WideNumber>::execute(wide_.data(), memory);
+}
+
 bool Tape::run_rows(std::span<const double* const> in, std::span<double* const> out) const {
   return TapeMachine<WideNumber>::run<kTapeLanes>(*this, wide_, in, out);
 }

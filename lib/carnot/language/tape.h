@@ -84,6 +84,18 @@ class Tape {
   // At kTapeLanes points side by side: number k of a group is row k of kTapeLanes numbers.
   bool run_rows(std::span<const double* const> in, std::span<double* const> out) const;
 
+  // For a caller that moves rows to and from the slots itself: where inputs are wanted, where results
+  // are, and all steps on the slots in `memory`, registers one after the other.
+  struct Run {  // rows of a group that go into neighbouring slots
+    std::uint32_t group;
+    std::uint32_t row;
+    std::uint32_t slot;
+    std::uint32_t count;
+  };
+  [[nodiscard]] std::span<const Run> inputs() const { return in_; }
+  [[nodiscard]] std::span<const std::uint32_t> outputs(int group) const { return out_[group]; }
+  void execute(std::byte* memory) const;
+
   // How many steps there are, and slots.
   [[nodiscard]] int steps() const { return static_cast<int>(steps_.size()); }
   [[nodiscard]] int slots() const { return slots_; }
@@ -104,13 +116,6 @@ class Tape {
     std::uint32_t to = 0;
     std::uint32_t second = 0;
   };
-  struct Run {  // rows that go into neighbouring slots
-    std::uint32_t group;
-    std::uint32_t row;
-    std::uint32_t slot;
-    std::uint32_t count;
-  };
-
   std::vector<TapeStep> steps_;
   std::vector<Run> in_;
   std::vector<std::vector<std::uint32_t>> out_;  // the slots of each group

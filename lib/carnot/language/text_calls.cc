@@ -223,10 +223,115 @@ bool jacobians(
   return true;
 }
 
+// The iteration on the tape of a linear system without a copy on the way: rows of the stages go
+// right into its slots, and rates right into the increments.
+template <int dof>
+class TapeIteration {
+ public:
+  static constexpr int kSize = 2 * dof;
+  using Lane = pack_lane::Widest<kLanes>::type;
+  using Ops = pack_lane::Ops<Lane>;
+  using Register = typename Ops::Register;
+  static constexpr int kPasses = kLanes / Ops::kSize;  // registers for a row
+  static constexpr std::size_t kRoom = 32768;          // bytes on the stack
+
+  static bool fits(const TextSystem& s) {
+    return !s.has_chart && kPasses * s.rate.slots() * sizeof(Register) <= kRoom;
+  }
+
+  TapeIteration(const TextSystem& s, const StageData& data)
+      : s_(s), data_(data), stride_(s.rate.slots() * sizeof(Register)) {
+    slots_.fill(-1);
+    for (const Tape::Run& run : s.rate.inputs()) {
+      for (std::uint32_t i = 0; i < run.count; ++i) {
+        const int slot = static_cast<int>((run.slot + i) * sizeof(Register));
+        if (run.group == 1) slots_[run.row + i] = slot;
+        if (run.group == 2) slots_[dof + run.row + i] = slot;
+        if (run.group == 0) time_ = slot;
+      }
+    }
+  }
+
+  StageReport run(const IterationLimits<double>& limits) {
+    StageReport report;
+    report.end = iterate_stages<double, kSize>(
+        limits,
+        [&](double* change) {
+          ++report.sweeps;
+          return sweep(change);
+        },
+        [&] { return scale_of_stages<kSize, kLanes>(data_); });
+    return report;
+  }
+
+ private:
+  // A row of numbers into a slot of each pass.
+  void put(const double* row, int slot) {
+    for (int pass = 0; pass < kPasses; ++pass) {
+      *reinterpret_cast<Register*>(memory_.data() + pass * stride_ + slot) =
+          Ops::register_of(Ops::load(row + pass * Ops::kSize));
+    }
+  }
+  [[nodiscard]] Lane at(int pass, std::uint32_t slot) const {
+    return Ops::of(*reinterpret_cast<const Register*>(memory_.data() + pass * stride_ +
+                                                      slot * sizeof(Register)));
+  }
+
+  double sweep(double* change) {
+    const double moved = move_stages<kSize, kLanes>(data_, change, [&](int k, const Pack<kLanes>&) {
+      if (slots_[k] >= 0) put(data_.stages + k * kLanes, slots_[k]);
+    });
+    if (time_ >= 0) put(data_.time, time_);
+    bool good = true;
+    for (int pass = 0; pass < kPasses; ++pass) {
+      s_.rate.execute(memory_.data() + pass * stride_);
+      for (const std::uint32_t slot : s_.rate.outputs(2)) {
+        good = good && Ops::all(at(pass, slot) > Lane(0.0));
+      }
+      const Lane weight = Ops::load(data_.weights + pass * Ops::kSize);
+      Lane even(0.0);
+      Lane odd(0.0);
+      const std::uint32_t* const slots = s_.rate.outputs(0).data();
+      for (int k = 0; k < kSize; k += 2) {
+        const Lane a = weight * at(pass, slots[k]);
+        const Lane b = weight * at(pass, slots[k + 1]);
+        even += Lane(0.0) * a;
+        odd += Lane(0.0) * b;
+        rates_[pass][k] = Ops::register_of(a);
+        rates_[pass][k + 1] = Ops::register_of(b);
+      }
+      good = good && Ops::all(even + odd == Lane(0.0));
+      double* y = data_.algebraic + pass * Ops::kSize;
+      for (const std::uint32_t slot : s_.rate.outputs(1)) {
+        Ops::store(at(pass, slot), y);
+        y += kLanes;
+      }
+    }
+    if (!good) return kNaN;
+    // Not before all of them are known to exist.
+    for (int pass = 0; pass < kPasses; ++pass) {
+      for (int k = 0; k < kSize; ++k) {
+        Ops::store(Ops::of(rates_[pass][k]), data_.increments + k * kLanes + pass * Ops::kSize);
+      }
+    }
+    return moved;
+  }
+
+  const TextSystem& s_;
+  const StageData& data_;
+  std::size_t stride_;
+  std::array<int, kSize> slots_;
+  int time_ = -1;
+  Register rates_[kPasses][kSize];
+  alignas(64) std::array<std::byte, kRoom> memory_;
+};
+
 template <int dof>
 StageReport iterate(const void* opaque,
                     const StageData& data,
                     const IterationLimits<double>& limits) {
+  const TextSystem& s = system_of(opaque);
+  if (s.linear && TapeIteration<dof>::fits(s)) return TapeIteration<dof>(s, data).run(limits);
   return iterate_with<2 * dof, kLanes>(
       [&](double* z_dot) { return rates(opaque, data.time, data.stages, data.algebraic, z_dot); },
       data,
@@ -815,7 +920,11 @@ void connect_calls(TextSystem& system) {
                                                    iterate<5>,
                                                    iterate<6>,
                                                    iterate<7>,
-                                                   iterate<8>};
+                                                   iterate<8>,
+                                                   iterate<9>,
+                                                   iterate<10>,
+                                                   iterate<11>,
+                                                   iterate<12>};
   assert(1 <= system.dof && system.dof <= kMostDof);
   assert(system.rate_checks.size() <= kMostChecks);
   system.functions = {system.dof,

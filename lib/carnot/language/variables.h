@@ -9,7 +9,7 @@
 namespace carnot::language {
 
 inline constexpr int kMostCoordinates = 24;  // of a generalized Hamiltonian system, all of z
-inline constexpr int kMostDof = 8;           // n: there are kernels for so many
+inline constexpr int kMostDof = 12;          // n: there are kernels for so many
 
 struct Block {
   int first = 0;
