@@ -24,34 +24,34 @@ std::string text_of_scene(const std::string& scene) {
 
 std::string new_scene_text(const std::string& name) {
   constexpr std::string_view kText =
-      R"(# NAME.scene: a car that is driven and steered (say here what yours is)
+      R"(# NAME.scene: a robot that pulls a trailer (say here what yours is)
 #
 # One statement a line; docs/scene_language.md has all of them. Try
 #   carnot scenes NAME.scene
 #   carnot geodesic NAME.scene --from 0,0,0,0 --to 0,1,0,0 --plot NAME.png
 
 # The configuration. A unit holds for the names before it; angles have the period 2 pi.
-coordinates x, y [length], theta, delta [angle]
-period delta = none
+coordinates x, y [length], theta, psi [angle]
 
-# Name, default, unit, range; --set wheelbase=2 changes one.
-parameters wheelbase = 1 [length] > 0 "distance between the axles"
-parameters steering = 0.5 [length^2] > 0 "what turning the wheels costs"
+# Name, default, unit, range; --set rod=2 changes one.
+parameters rod = 1 [length] > 0 "from the robot to the axle of the trailer"
+parameters turning = 1 [length^2] > 0 "what turning costs against driving"
 
 # What a path makes stationary: x' is the velocity of x.
-kinetic = (x'^2 + y'^2 + steering delta'^2) / 2
+kinetic = (x'^2 + y'^2 + turning theta'^2) / 2
 
-# What velocities obey.
+# What velocities obey: no wheel slips sideways.
 0 = x' sin(theta) - y' cos(theta)
-0 = x' sin(theta + delta) - y' cos(theta + delta) - wheelbase cos(delta) theta'
+0 = x' sin(psi) - y' cos(psi) + rod psi'
 
 # How it is drawn, and what is reported of a path: the largest absolute value.
-let fx = x + wheelbase cos(theta)
-let fy = y + wheelbase sin(theta)
-draw (x, y) -- (fx, fy)
-draw wheel((x, y), theta, wheelbase / 6)
-draw wheel((fx, fy), theta + delta, wheelbase / 6)
-report steering_angle [angle] = delta
+let tx = x - rod cos(psi)
+let ty = y - rod sin(psi)
+draw box((x, y), theta, rod / 2, rod / 3)
+draw (x, y) -- (tx, ty)
+draw box((tx, ty), psi, rod / 2, rod / 3)
+draw wheel((tx, ty), psi, rod / 8)
+report hinge [angle] = theta - psi
 )";
   std::string text(kText);
   for (std::size_t at = text.find("NAME"); at != std::string::npos; at = text.find("NAME", at)) {

@@ -87,8 +87,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"default_out_of_range", "parameters k = -1 > 0\n", "1:12", "out of its range"},
         Case{"no_equation", with("x' sin(theta)"), "4:14", "'=' in an equation"},
         Case{"no_coordinates", with("0 = 3"), "4:1", "no coordinates"},
-        Case{"time", with("0 = x' - t y'"), "4:1", "depends on t"},
-        Case{"not_linear", with("0 = x'^2 - y'"), "4:1", "not linear in the velocities"},
+        Case{"time", with("0 = x - t"), "4:1", "depends on t"},
         Case{"too_many_rows", with("0 = x'\n0 = y'"), "5:1", "nothing free"},
         Case{"not_quadratic",
              "coordinates x, y\nkinetic = x'^4 + y'^2\n",
@@ -186,6 +185,21 @@ TEST(SceneText, JuxtapositionMultiplies) {
   EXPECT_EQ(value("sqrt(x + 2) x"), 4);
   EXPECT_EQ(value("(x\n + 1)"), 3);  // brackets join lines
   EXPECT_NEAR(value("sin(pi/2) + atan2(0, x) + 1e0"), 2, 1e-15);
+}
+
+// What is more than a scene with velocity constraints can have becomes a Lagrangian.
+TEST(SceneText, TimeAndOtherConstraintsMakeALagrangian) {
+  const auto kind = [](const std::string& text) { return scene_from_text(text).info().kind; };
+  EXPECT_EQ(kind(kUnicycle), "velocity constraints");
+  const std::string plane = "coordinates x, y\nkinetic = (x'^2 + y'^2)/2\n";
+  EXPECT_EQ(kind(plane), "velocity constraints");
+  EXPECT_EQ(kind(plane + "potential = x sin(t)\n"), "Lagrangian");
+  EXPECT_EQ(kind(plane + "0 = x' - t y'\n"), "Lagrangian");
+  EXPECT_EQ(kind(plane + "0 = x' - 1\n"), "Lagrangian");
+  EXPECT_EQ(kind("coordinates x, y, z\nkinetic = (x'^2 + y'^2 + z'^2)/2\n"
+                 "0 = x'^2 + y'^2 - z'^2\nguess x' = p_x, y' = p_y, z' = p_z\n"),
+            "Lagrangian");
+  EXPECT_EQ(kind(plane + "0 = x^2 + y^2 - 1\n"), "velocity + holonomic constraints");
 }
 
 TEST(SceneText, CommentsUnitsAndTexts) {

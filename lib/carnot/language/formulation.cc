@@ -20,11 +20,18 @@ class Formulator {
     if (scene_.hamiltonian) {
       generalized();
     } else if (scene_.lagrangian) {
-      lagrangian();
+      refuse(scene_.kinetic, "'kinetic' beside 'lagrangian'");
+      refuse(scene_.mass, "'mass' beside 'lagrangian'");
+      refuse(scene_.potential, "'potential' beside 'lagrangian'");
+      lagrangian(*scene_.lagrangian);
     } else if (!scene_.controls.empty()) {
       control();
     } else if (scene_.kinetic || scene_.mass) {
-      velocity();
+      if (is_general()) {
+        lagrangian(kinetic_less_potential());
+      } else {
+        velocity();
+      }
     } else {
       fail({1, 1},
            "nothing is said that a path makes stationary; accepted: kinetic or mass, controls and "
@@ -137,9 +144,6 @@ class Formulator {
            "the kinetic energy is no quadratic form in the velocities; accepted: "
            "lagrangian = ... for any other function");
     }
-    if (depends(kinetic.expression, kTime)) {
-      fail(kinetic.place, "the kinetic energy depends on t; accepted: lagrangian = ...");
-    }
     return m;
   }
 
@@ -170,17 +174,7 @@ class Formulator {
     const int n = scene_.dof();
     SymbolicVector rows;
     for (const Formula& row : scene_.rows) {
-      if (is_holonomic(row)) continue;
-      if (depends(row.expression, kTime)) {
-        fail(row.place, "the constraint depends on t; accepted with lagrangian = ...");
-      }
-      const SymbolicMatrix slopes = jacobian(graph_, {row.expression}, kVelocity.first, n);
-      if (depends(slopes, kVelocity) || !without(row.expression, kVelocity).is_zero()) {
-        fail(row.place,
-             "the constraint is not linear in the velocities; accepted with "
-             "lagrangian = ...");
-      }
-      rows.push_back(row.expression);
+      if (!is_holonomic(row)) rows.push_back(row.expression);
     }
     out_.multipliers = static_cast<int>(rows.size());
     for (const Expression& e : hidden_constraints()) rows.push_back(e);
@@ -200,7 +194,7 @@ class Formulator {
     Expression potential = graph_.number(0);
     if (scene_.potential) {
       potential = scene_.potential->expression;
-      if (depends(potential, kVelocity) || depends(potential, kTime)) {
+      if (depends(potential, kVelocity)) {
         fail(scene_.potential->place,
              "the potential may depend on the coordinates only; accepted: "
              "lagrangian = ... for any other function");
@@ -349,15 +343,35 @@ class Formulator {
 
   // ---- Lagrangian, H = p.v - L + lambda.g
 
-  void lagrangian() {
-    refuse(scene_.kinetic, "'kinetic' beside 'lagrangian'");
-    refuse(scene_.mass, "'mass' beside 'lagrangian'");
-    refuse(scene_.potential, "'potential' beside 'lagrangian'");
-    refuse(scene_.cost, "'cost' beside 'lagrangian'");
-    if (!scene_.controls.empty()) fail(scene_.lagrangian->place, "'lagrangian' beside controls");
+  // Kinetic energy and constraints are there, but t, or constraints that are not linear in the
+  // velocities, ask for a Lagrangian.
+  bool is_general() {
+    const auto moves = [&](const Formula& f) { return depends(f.expression, kTime); };
+    if (scene_.kinetic && moves(*scene_.kinetic)) return true;
+    if (scene_.potential && moves(*scene_.potential)) return true;
+    return std::any_of(scene_.rows.begin(), scene_.rows.end(), [&](const Formula& row) {
+      if (!depends(row.expression, kVelocity)) return false;
+      const SymbolicVector slopes = gradient(graph_, row.expression, kVelocity.first, scene_.dof());
+      const bool linear = std::none_of(
+          slopes.begin(), slopes.end(), [&](const Expression& e) { return depends(e, kVelocity); });
+      return moves(row) || !linear || !without(row.expression, kVelocity).is_zero();
+    });
+  }
+
+  Formula kinetic_less_potential() {
+    Formula f = scene_.kinetic ? *scene_.kinetic
+                               : Formula{half_form(mass(), velocities()), scene_.mass->place};
+    if (scene_.kinetic) refuse(scene_.mass, "'mass' beside 'kinetic'; one of them is enough");
+    if (scene_.potential) f.expression = f.expression - scene_.potential->expression;
+    return f;
+  }
+
+  void lagrangian(const Formula& of) {
+    refuse(scene_.cost, "'cost' without controls");
+    if (!scene_.controls.empty()) fail(of.place, "a Lagrangian beside controls");
     out_.kind = Formulation::Kind::kLagrangian;
     const int n = scene_.dof();
-    const Expression l = scene_.lagrangian->expression;
+    const Expression l = of.expression;
     SymbolicVector g;
     out_.autonomous = !depends(l, kTime);
     for (const Formula& row : scene_.rows) {
@@ -394,7 +408,7 @@ class Formulator {
     for (int i = 0; i < n; ++i) out_.momentum[i] = out_.momentum[i] - pushed[i];
     out_.linear = !depends(m, kVelocity) && !depends(rows, kVelocity);
     if (!out_.linear && !out_.holonomic.empty()) {
-      fail(scene_.lagrangian->place,
+      fail(of.place,
            "holonomic constraints with a Lagrangian that is not quadratic "
            "in the velocities; write coordinates on which they hold");
     }

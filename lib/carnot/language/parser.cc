@@ -641,7 +641,7 @@ class Parser {
   void period() {
     do {
       const int i = expect_coordinate();
-      expect("=", "and the period");
+      if (!take(":")) expect("=", "and the period");
       if (now().kind == Token::Kind::kName && now().text == "none") {
         ++at_;
         scene_.coordinates[i].period = 0;
