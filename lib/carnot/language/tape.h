@@ -102,8 +102,10 @@ class Tape {
 
  private:
   friend class TapeBuilder;
-  template <class V>
+  template <class V, bool tail_calls>
   friend struct TapeMachine;
+  template <class V>
+  friend struct TapeOn;
 
   // A step as the interpreter reads it. Slots are offsets in bytes.
   union Operand {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -21,18 +22,21 @@ using WideNumber = pack_lane::Widest<kTapeLanes>::type;
 // The memory of slots of this thread, at least `bytes` long and aligned for any register.
 std::byte* tape_memory(std::size_t bytes);
 
+// Whether the functions of this file jump to each other.
+#ifdef CARNOT_TAIL_CALLS
+constexpr bool kTailCalls = true;
+#else
+constexpr bool kTailCalls = false;
+#endif
+
 // V is a register of numbers side by side as xsimd has it, or double.
-template <class V>
+template <class V, bool tail_calls = kTailCalls>
 struct TapeMachine {
   using Ops = pack_lane::Ops<V>;
   using Register = typename Ops::Register;
   using Instruction = Tape::Instruction;
   using Where = TapeOperand::Where;
-#ifdef CARNOT_TAIL_CALLS
-  using Result = void;
-#else
-  using Result = Register;
-#endif
+  using Result = std::conditional_t<tail_calls, void, Register>;
   using Handler = Result (*)(const Instruction*, std::byte*, Register);
   using AnyHandler = void (*)();
 
@@ -133,11 +137,11 @@ struct TapeMachine {
                                 load<b>(at->operands[1], memory, before),
                                 load<c>(at->operands[2], memory, before));
     if constexpr (stored) store(result, memory + at->to);
-#ifdef CARNOT_TAIL_CALLS
-    return reinterpret_cast<Handler>(at[1].handler)(at + 1, memory, Ops::register_of(result));
-#else
-    return Ops::register_of(result);
-#endif
+    if constexpr (tail_calls) {
+      return reinterpret_cast<Handler>(at[1].handler)(at + 1, memory, Ops::register_of(result));
+    } else {
+      return Ops::register_of(result);
+    }
   }
 
   // The handlers of an operation, by where its operands are: those that it does not have are
@@ -226,9 +230,9 @@ struct TapeMachine {
     }
   }
 
-#ifdef CARNOT_TAIL_CALLS
-  static void stop(const Instruction*, std::byte*, Register) {}
-#endif
+  static Result stop(const Instruction*, std::byte*, Register last) {
+    if constexpr (!tail_calls) return last;
+  }
 
   static std::vector<Instruction> bind(const Tape& tape) {
     std::vector<Instruction> code;
@@ -249,9 +253,7 @@ struct TapeMachine {
       code.push_back(instruction);
     }
     code.emplace_back();
-#ifdef CARNOT_TAIL_CALLS
-    code.back().handler = reinterpret_cast<AnyHandler>(&stop);
-#endif
+    if constexpr (tail_calls) code.back().handler = reinterpret_cast<AnyHandler>(&stop);
     return code;
   }
 
@@ -302,13 +304,13 @@ struct TapeMachine {
 
   static void execute(const Instruction* at, std::byte* memory) {
     Register last{};
-#ifdef CARNOT_TAIL_CALLS
-    reinterpret_cast<Handler>(at->handler)(at, memory, last);
-#else
-    for (; at->handler != nullptr; ++at) {
-      last = reinterpret_cast<Handler>(at->handler)(at, memory, last);
+    if constexpr (tail_calls) {
+      reinterpret_cast<Handler>(at->handler)(at, memory, last);
+    } else {
+      for (; at->handler != nullptr; ++at) {
+        last = reinterpret_cast<Handler>(at->handler)(at, memory, last);
+      }
     }
-#endif
   }
 };  // namespace carnot::language
 
