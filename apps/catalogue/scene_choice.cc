@@ -8,34 +8,11 @@
 
 #include "carnot/language/nearest.h"
 #include "carnot/load_scene.h"
-#include "carnot/tableau/methods.h"
+#include "catalogue/text_entry.h"
 #include "text/numbers.h"
 
 namespace carnot::apps {
 namespace {
-
-SceneEntry text_entry(const TextScene& scene) {
-  SceneEntry entry;
-  entry.info = scene.info();
-  entry.dof = scene.dof();
-  entry.multipliers = scene.multipliers();
-  for (const TextParameter& p : scene.parameters()) {
-    entry.parameters.push_back({p.name, p.default_value, p.unit, p.range, p.meaning});
-  }
-  entry.holonomic = scene.holonomic();
-  entry.suits = [held = scene.holonomic() > 0](const Method& method) {
-    return !held || method.family != kRattleFamily;
-  };
-  entry.make = [scene](const ParameterValues& values, const std::string& method) {
-    const bool same = std::all_of(
-        scene.parameters().begin(), scene.parameters().end(), [&](const TextParameter& p) {
-          const auto value = values.find(p.name);
-          return value == values.end() || value->second == p.value;
-        });
-    return make_dynamics(same ? scene : scene.with(values), method);
-  };
-  return entry;
-}
 
 std::vector<std::string> parameter_names(const SceneEntry& entry) {
   std::vector<std::string> names;

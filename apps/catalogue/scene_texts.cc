@@ -16,10 +16,7 @@ std::string text_of_scene(const std::string& scene) {
     if (known.name == scene) return std::string(known.text);
     names.push_back(known.name);
   }
-  refuse("--text",
-         scene,
-         "this scene has no text",
-         fmt::format("{}", fmt::join(names, ", ")));
+  refuse("--text", scene, "this scene has no text", fmt::format("{}", fmt::join(names, ", ")));
 }
 
 std::string new_scene_text(const std::string& name) {

@@ -18,24 +18,24 @@ namespace {
 
 bool is_angle(const Coordinate& c) { return c.period > 0 || c.unit == "rad"; }
 
-int named(const SceneSource& scene, const std::string& name) {
-  for (int i = 0; i < scene.dof(); ++i) {
-    if (scene.coordinates[i].name == name) return i;
+int named(const std::vector<Coordinate>& coordinates, const std::string& name) {
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    if (coordinates[i].name == name) return static_cast<int>(i);
   }
   return -1;
 }
 
 // The coordinates that are drawn: those called x, y and z, or else the first ones that are no
 // angles.
-std::vector<int> places(const SceneSource& scene) {
+std::vector<int> places(const std::vector<Coordinate>& coordinates) {
   std::vector<int> found;
   for (const char* const name : {"x", "y", "z"}) {
-    if (const int i = named(scene, name); i >= 0) found.push_back(i);
+    if (const int i = named(coordinates, name); i >= 0) found.push_back(i);
   }
   if (found.size() >= 2) return found;
   found.clear();
-  for (int i = 0; i < scene.dof() && found.size() < 3; ++i) {
-    if (!is_angle(scene.coordinates[i])) found.push_back(i);
+  for (std::size_t i = 0; i < coordinates.size() && found.size() < 3; ++i) {
+    if (!is_angle(coordinates[i])) found.push_back(static_cast<int>(i));
   }
   return found;
 }
@@ -123,9 +123,9 @@ void draw_in_space(const SceneSource& scene, Drawing& drawing) {
   };
 }
 
-Drawing drawing_of(const SceneSource& scene) {
+Drawing drawing_of(const SceneSource& scene, const std::vector<Coordinate>& coordinates) {
   Drawing drawing;
-  const std::vector<int> axes = places(scene);
+  const std::vector<int> axes = places(coordinates);
   const bool in_space =
       scene.path || std::any_of(scene.drawing.begin(),
                                 scene.drawing.end(),
@@ -135,7 +135,7 @@ Drawing drawing_of(const SceneSource& scene) {
   if (in_space || (!in_plane && axes.size() == 3)) {
     drawing.view = Drawing::View::kSpace;
     if (scene.path) {
-      const std::string unit = axes.empty() ? "" : scene.coordinates[axes[0]].unit;
+      const std::string unit = axes.empty() ? "" : coordinates[axes[0]].unit;
       drawing.place.coordinates = {{{"x", unit, 0}, {"y", unit, 0}, {"z", unit, 0}}};
       drawing.place.at = [of = numbers(scene, *scene.path)](const double* q) {
         const std::vector<double> values = of.at(q);
@@ -330,9 +330,9 @@ SceneInfo describe_text(const SceneSource& scene, const Formulation& formulation
         info.configuration[i] = {"q" + std::to_string(i + 1), "", 0};
       }
     }
-    return info;
   }
-  info.drawing = drawing_of(scene);
+  // The formulas of a generalized Hamiltonian scene are in z, which a configuration does not have.
+  info.drawing = drawing_of(scene, info.configuration);
   for (const ReportSource& report : scene.reports) {
     const Numbers of = numbers(scene, {report.value});
     info.extremes.push_back(

@@ -539,6 +539,10 @@ class Formulator {
     if (!scene_.rows.empty()) fail(scene_.rows[0].place, "an equation beside 'hamiltonian'");
     if (!scene_.controls.empty()) fail(scene_.hamiltonian->place, "'hamiltonian' beside controls");
     out_.kind = Formulation::Kind::kGeneralizedHamiltonian;
+    if (!scene_.drawing.empty()) fail(scene_.drawing[0].place, "'draw' beside 'hamiltonian'");
+    if (scene_.path || !scene_.reports.empty()) {
+      fail(scene_.hamiltonian->place, "'path' or 'report' beside 'hamiltonian'");
+    }
     const int size = scene_.dof();
     const Expression h = scene_.hamiltonian->expression;
     if (depends(h, kVelocity)) {
