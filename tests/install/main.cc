@@ -2,6 +2,7 @@
 //
 // Martinet's flat structure with a mass in z: M = I, g = (y^2/2, 0, -1), so z' = y^2 x'/2. No
 // frame, no names, no derivatives: only what a scene must have.
+#include <carnot/load_scene.h>
 #include <carnot/make_dynamics.h>
 #include <carnot/shooting/find_geodesics.h>
 
@@ -44,6 +45,16 @@ double endpoint_error(const carnot::BoundaryValueProblem& problem,
   return std::hypot(z[0] - problem.to[0], z[1] - problem.to[1], z[2] - problem.to[2]);
 }
 
+// The same problem from text has the same action.
+bool text_agrees(const carnot::BoundaryValueProblem& problem, double action) {
+  const carnot::TextScene ramp =
+      carnot::scene_from_text("coordinates x, y, z\nmass = diag(1, 1, 1)\n0 = y^2 x' / 2 - z'\n");
+  const carnot::GeodesicReport report =
+      carnot::find_geodesics({carnot::make_dynamics(ramp), problem.from, problem.to, 1});
+  return !report.geodesics.empty() &&
+         std::abs(report.geodesics.front().action - action) < 1e-9 * action;
+}
+
 }  // namespace
 
 int main() {
@@ -61,5 +72,6 @@ int main() {
   // No path is shorter than the straight line, of action |q1 - q0|^2 / 2.
   const bool good = error < 1e-9 && geodesic.action >= 0.5 * (1 + 0.25 + 0.16) &&
                     geodesic.constraint_error < 1e-12 && !geodesic.trajectory.t.empty();
-  return good && smallest_eigenvalue(12) > 0.4 ? EXIT_SUCCESS : EXIT_FAILURE;
+  const bool same = text_agrees(problem, geodesic.action);
+  return good && same && smallest_eigenvalue(12) > 0.4 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
