@@ -71,8 +71,14 @@ class Formulator {
     const SymbolicVector zeros(static_cast<std::size_t>(block.count), graph_.number(0));
     return graph_.substitute(a, block.first, zeros);
   }
+  // x'M x/2, M symmetric, entry by entry: derivatives of that are short.
   Expression half_form(const SymbolicMatrix& m, const SymbolicVector& x) {
-    return 0.5 * dot(graph_, x, product(graph_, m, x));
+    SymbolicVector terms;
+    for (int i = 0; i < m.rows; ++i) {
+      terms.push_back(0.5 * (m(i, i) * x[i] * x[i]));
+      for (int j = 0; j < i; ++j) terms.push_back(m(i, j) * x[i] * x[j]);
+    }
+    return graph_.sum(terms);
   }
   void refuse(const std::optional<Formula>& formula, const std::string& what) const {
     if (formula) fail(formula->place, what);

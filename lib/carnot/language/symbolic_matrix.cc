@@ -56,6 +56,10 @@ Expression dot(Graph& graph, const SymbolicVector& a, const SymbolicVector& b) {
 SymbolicCholesky::SymbolicCholesky(Graph& graph, const SymbolicMatrix& a)
     : graph_(&graph), lower_(identity(graph, a.rows)) {
   const int n = a.rows;
+  if (n == 2 && !a(1, 0).is_zero()) {
+    factor_two(a);
+    return;
+  }
   const double threshold = pivot_round_off<double>(n);
   SymbolicVector pivots;
   for (int j = 0; j < n; ++j) {
@@ -76,19 +80,29 @@ SymbolicCholesky::SymbolicCholesky(Graph& graph, const SymbolicMatrix& a)
   }
 }
 
-SymbolicVector SymbolicCholesky::forward(const SymbolicVector& b) const {
+void SymbolicCholesky::factor_two(const SymbolicMatrix& a) {
+  const Expression product = a(0, 0) * a(1, 1);
+  const Expression determinant = product - a(1, 0) * a(1, 0);
+  slack_ = {a(0, 0), determinant - pivot_round_off<double>(2) * product};
+  // Where it vanishes the check says so; a division by zero would not.
+  const Expression inverse =
+      determinant.is_zero() ? graph_->number(1) : graph_->whole(graph_->power(determinant, -1));
+  adjugate_.emplace(*graph_, 2, 2);
+  (*adjugate_)(0, 0) = a(1, 1) * inverse;
+  (*adjugate_)(1, 1) = a(0, 0) * inverse;
+  (*adjugate_)(0, 1) = -(a(1, 0) * inverse);
+  (*adjugate_)(1, 0) = (*adjugate_)(0, 1);
+}
+
+SymbolicVector SymbolicCholesky::solve(const SymbolicVector& b) const {
+  if (adjugate_) return product(*graph_, *adjugate_, b);
   SymbolicVector x = b;
-  for (int i = 1; i < lower_.rows; ++i) {
+  const int n = lower_.rows;
+  for (int i = 1; i < n; ++i) {
     SymbolicVector terms{x[i]};
     for (int k = 0; k < i; ++k) terms.push_back(-(lower_(i, k) * x[k]));
     x[i] = graph_->sum(terms);
   }
-  return x;
-}
-
-SymbolicVector SymbolicCholesky::solve(const SymbolicVector& b) const {
-  SymbolicVector x = forward(b);
-  const int n = lower_.rows;
   for (int i = 0; i < n; ++i) x[i] = x[i] * inverses_[i];
   for (int i = n - 2; i >= 0; --i) {
     SymbolicVector terms{x[i]};

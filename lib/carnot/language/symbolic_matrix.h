@@ -41,20 +41,22 @@ struct Check {
 };
 
 // A = L D L' of a symmetric matrix that is to be positive definite: straight-line, in the form of
-// numerics/cholesky.h. Only what is at or below the diagonal of `a` is read.
+// numerics/cholesky.h. Two by two, the inverse is the adjugate over the determinant: one division.
+// Only what is at or below the diagonal of `a` is read.
 class SymbolicCholesky {
  public:
   SymbolicCholesky(Graph& graph, const SymbolicMatrix& a);
 
   [[nodiscard]] SymbolicVector solve(const SymbolicVector& b) const;
-  // L^-1 b, and D^-1.
-  [[nodiscard]] SymbolicVector forward(const SymbolicVector& b) const;
-  [[nodiscard]] const SymbolicVector& inverse_pivots() const { return inverses_; }
   // That the pivots are positive to round-off, but for those that are constants and are.
   void add_checks(RateStatus status, std::vector<Check>& checks) const;
 
  private:
+  // That of two rows.
+  void factor_two(const SymbolicMatrix& a);
+
   Graph* graph_;
+  std::optional<SymbolicMatrix> adjugate_;  // over the determinant, of two rows
   SymbolicMatrix lower_;
   SymbolicVector inverses_;
   SymbolicVector slack_;  // each pivot minus what would be round-off

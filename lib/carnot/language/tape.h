@@ -84,8 +84,8 @@ class Tape {
   // At kTapeLanes points side by side: number k of a group is row k of kTapeLanes numbers.
   bool run_rows(std::span<const double* const> in, std::span<double* const> out) const;
 
-  // For a caller that moves rows to and from the slots itself: where inputs are wanted, where results
-  // are, and all steps on the slots in `memory`, registers one after the other.
+  // For a caller that moves rows to and from the slots itself: where inputs are wanted, where
+  // results are, and all steps on the slots in `memory`, registers one after the other.
   struct Run {  // rows of a group that go into neighbouring slots
     std::uint32_t group;
     std::uint32_t row;

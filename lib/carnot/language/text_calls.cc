@@ -87,7 +87,7 @@ RateStatus solve(const TextSystem& s, const double& t, const double* z, double* 
 
 RateStatus rate(const void* opaque, double t, const double* z, double* y, double* z_dot) {
   const TextSystem& s = system_of(opaque);
-  if (!regular_chart(s, z)) return RateStatus::kChart;
+  if (!s.linear && !regular_chart(s, z)) return RateStatus::kChart;
   std::array<double, 2 * kMostDof> out;
   if (s.linear) {
     std::array<double, kMostMultipliers> solution;
@@ -146,8 +146,9 @@ RateStatus newton_jacobian(
 
 RateStatus jacobian(const void* opaque, double t, const double* z, const double* y, double* out) {
   const TextSystem& s = system_of(opaque);
-  if (!regular_chart(s, z)) return RateStatus::kChart;
-  if (!s.linear) return newton_jacobian(s, t, z, y, out);
+  if (!s.linear) {
+    return regular_chart(s, z) ? newton_jacobian(s, t, z, y, out) : RateStatus::kChart;
+  }
   const int size = 2 * s.dof;
   std::array<double, 4 * kMostDof * kMostDof> rows;
   std::array<double, kMostChecks> checks;
@@ -170,15 +171,6 @@ bool all_pass(std::size_t checks, const double* values) {
   return pass;
 }
 
-bool regular_charts(const TextSystem& s, const double* q) {
-  if (!s.has_chart) return true;
-  using P = Pack<kLanes>;
-  std::array<double, kLanes> values;
-  const Groups rows{kIdle.data(), q, kIdle.data(), kIdle.data(), kIdle.data(), kIdle.data()};
-  s.chart.run_rows(rows, std::array<double*, 1>{values.data()});
-  return all(abs(P::load(values.data())) > P(kNearSingularChart));
-}
-
 Groups rows_at(const TextSystem& s, const double* t, const double* z, const double* y) {
   return {t, z, z + s.dof * kLanes, y, kIdle.data(), kIdle.data()};
 }
@@ -186,7 +178,6 @@ Groups rows_at(const TextSystem& s, const double* t, const double* z, const doub
 bool rates(const void* opaque, const double* t, const double* z, double* y, double* z_dot) {
   const TextSystem& s = system_of(opaque);
   if (s.linear) {
-    if (!regular_charts(s, z)) return false;
     std::array<double, kMostChecks * kLanes> checks;
     const bool finite = s.rate.run_rows(rows_at(s, t, z, kIdle.data()),
                                         std::array<double*, 3>{z_dot, y, checks.data()});
@@ -211,7 +202,7 @@ bool rates(const void* opaque, const double* t, const double* z, double* y, doub
 bool jacobians(
     const void* opaque, const double* t, const double* z, const double* weights, double* out) {
   const TextSystem& s = system_of(opaque);
-  if (!s.linear || !regular_charts(s, z)) return false;
+  if (!s.linear) return false;
   const int count = 4 * s.dof * s.dof;
   std::array<double, kMostChecks * kLanes> checks;
   const bool finite = s.jacobian.run_rows(rows_at(s, t, z, kIdle.data()),
@@ -236,7 +227,7 @@ class TapeIteration {
   static constexpr std::size_t kRoom = 32768;          // bytes on the stack
 
   static bool fits(const TextSystem& s) {
-    return !s.has_chart && kPasses * s.rate.slots() * sizeof(Register) <= kRoom;
+    return kPasses * s.rate.slots() * sizeof(Register) <= kRoom;
   }
 
   TapeIteration(const TextSystem& s, const StageData& data)

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "carnot/language/text_calls.h"
+#include "carnot/scene/chart.h"
 
 namespace carnot::language {
 namespace {
@@ -118,7 +119,12 @@ class TapeMaker {
   void linear_rate() {
     SymbolicVector rate;
     for (const Expression& e : motion()) rate.push_back(at_solution(e));
-    const SymbolicVector checks = values(f_.checks, system_.rate_checks);
+    std::vector<Check> all = f_.checks;
+    if (f_.chart) {
+      const Expression small = graph_.number(kNearSingularChart * kNearSingularChart);
+      all.insert(all.begin(), {graph_.power(*f_.chart, 2) - small, RateStatus::kChart});
+    }
+    const SymbolicVector checks = values(all, system_.rate_checks);
     system_.rate = tape({rate, whole_solution_, checks});
     SymbolicMatrix s = second_derivatives(true);
     const SymbolicMatrix mixed = mixed_derivatives(true);
