@@ -281,8 +281,9 @@ TEST_P(TextTwins, MeasuresAlike) {
   constexpr double kTolerance = 1e-11;
   EXPECT_NEAR(text.action, twin.action, kTolerance * (1 + std::abs(twin.action)));
   EXPECT_EQ(std::isnan(text.length), std::isnan(twin.length));
-  if (!std::isnan(twin.length))
+  if (!std::isnan(twin.length)) {
     EXPECT_NEAR(text.length, twin.length, kTolerance * (1 + twin.length));
+  }
   EXPECT_LE(text.constraint_error, 1e-13);
 }
 

@@ -36,7 +36,10 @@ struct TapeMachine {
   using Register = typename Ops::Register;
   using Instruction = Tape::Instruction;
   using Where = TapeOperand::Where;
-  using Result = std::conditional_t<tail_calls, void, Register>;
+  // Nothing is returned from a jump. (As a template argument a register loses its attributes.)
+  static void result_of(std::true_type);
+  static Register result_of(std::false_type);
+  using Result = decltype(result_of(std::bool_constant<tail_calls>{}));
   using Handler = Result (*)(const Instruction*, std::byte*, Register);
   using AnyHandler = void (*)();
 
