@@ -67,7 +67,8 @@ CLI::App* find_subcommand(CLI::App& app, const std::vector<std::string>& argumen
   const std::string& first = arguments.front();
   if (first == "-h" || first == "--help" || first == "--version") return nullptr;
   if (std::find(names.begin(), names.end(), first) == names.end()) {
-    refuse("SUBCOMMAND", first, "no such subcommand" + language::suggestion(first, names), accepted);
+    refuse(
+        "SUBCOMMAND", first, "no such subcommand" + language::suggestion(first, names), accepted);
   }
   return app.get_subcommand(first);
 }

@@ -106,7 +106,8 @@ TextScene scene_from_text(const std::string& text,
 
 TextScene load_scene(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file || !std::filesystem::is_regular_file(path)) throw std::invalid_argument(path + ": the file can't be read");
+  if (!file || !std::filesystem::is_regular_file(path))
+    throw std::invalid_argument(path + ": the file can't be read");
   const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   if (file.bad()) throw std::invalid_argument(path + ": the file can't be read");
   std::string name = path.substr(path.find_last_of('/') + 1);

@@ -1,4 +1,3 @@
-#include "carnot/language/nearest.h"
 #include "text/arguments.h"
 
 #include <gmock/gmock.h>
@@ -6,6 +5,7 @@
 
 #include <stdexcept>
 
+#include "carnot/language/nearest.h"
 
 namespace carnot::apps::arguments_test {
 namespace {

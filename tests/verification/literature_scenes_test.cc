@@ -139,7 +139,7 @@ TEST(Literature, BoardsDoNotKnowWhereTheyAre) {
   EXPECT_EQ(std::count(board.angles.begin(), board.angles.end(), 2), 1);
   const Dynamics d = dynamics("snakeboard");
   const Point z0{0, 0, 0.2, 0.1, 0.5, 0.7, 0.4, 0.3, 0.2, 0.1};
-  const Point z = flow(d, z0, 0.3);  // long before the trucks stand across
+  const Point z = flow(d, z0, 0.3);     // long before the trucks stand across
   EXPECT_NEAR(z[8], z0[8], kRoundOff);  // the momentum of the rotor
   const auto about_origin = [](const Point& at) { return at[0] * at[6] - at[1] * at[5] + at[7]; };
   EXPECT_NEAR(about_origin(z), about_origin(z0), kRoundOff);

@@ -235,9 +235,7 @@ class RungeKutta {
   }
 
   // y of the stage before: for stages that are found one after the other.
-  void warm_start(int i) {
-    set_algebraic(i, i == 0 ? branch_ : algebraic(i - 1));
-  }
+  void warm_start(int i) { set_algebraic(i, i == 0 ? branch_ : algebraic(i - 1)); }
 
   void set_algebraic(int i, const Algebraic& y) {
     if constexpr (System::kAlgebraic > 0) algebraic_.col(i) = y;

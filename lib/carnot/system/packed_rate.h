@@ -44,10 +44,12 @@ template <int W, class System, class Lane = typename pack_lane::Widest<W>::type>
 }
 
 // Directions that are differentiated at once: Jets of all 2n do not fit the registers, and take the
-// compiler several times as long. Of many coordinates fewer, for the sake of the stack: a mass matrix
-// on Jets of them takes n^2 (n + 1) (directions + 1) packs.
+// compiler several times as long. Of many coordinates fewer, for the sake of the stack: a mass
+// matrix on Jets of them takes n^2 (n + 1) (directions + 1) packs.
 template <int n>
-inline constexpr int kPackedDirections = n <= 7 ? std::min(3, 2 * n) : n == 8 ? 2 : 1;
+inline constexpr int kPackedDirections = n <= 7   ? std::min(3, 2 * n)
+                                         : n == 8 ? 2
+                                                  : 1;
 
 // The derivatives of z_dot at W points side by side in some directions, that of each lane its own:
 // direction d is the 2n rows seeds[d], and derivative r in that direction, times the row `weights`,
