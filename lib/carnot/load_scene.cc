@@ -8,6 +8,7 @@
 
 #include "carnot/flow/make_kernel.h"
 #include "carnot/language/describe_text.h"
+#include "carnot/language/examine_text.h"
 #include "carnot/language/text_system.h"
 #include "carnot/tableau/methods.h"
 

@@ -40,7 +40,6 @@ TEST_F(ExpressionTest, EqualFormulasAreOneNode) {
   EXPECT_TRUE(same(x_ + x_, 2 * x_));
   EXPECT_TRUE((x_ * y_ - y_ * x_).is_zero());
   EXPECT_TRUE(same(x_ * y_ / x_, y_));
-  EXPECT_TRUE(same(x_ + y_ + z_ - y_ - x_, z_) || !(x_ + y_ + z_ - y_ - x_).is_constant());
   EXPECT_TRUE(same(graph_.power(x_, 2) * x_, graph_.power(x_, 3)));
   EXPECT_TRUE(same(sin(-x_), -sin(x_)));
   EXPECT_TRUE(same(cos(-x_), cos(x_)));

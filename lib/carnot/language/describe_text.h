@@ -1,26 +1,15 @@
-// What a scene from text says of itself, and what is found out about it: its symmetries, and
-// whether it is of index 1 at all.
+// What a scene from text says of itself.
 #pragma once
 
-#include "carnot/dynamics.h"
 #include "carnot/language/formulation.h"
 #include "carnot/language/scene_source.h"
 
 namespace carnot::language {
 
+// Whether it is measured in radians or has a period.
+bool is_angle(const Coordinate& coordinate);
+
 // Names, units, drawing and reports. `formulation` is that of the scene.
 SceneInfo describe_text(const SceneSource& scene, const Formulation& formulation);
-
-// The symmetries of H at random points: changes of signs, rigid motions of the plane, coordinates
-// that H does not depend on. Up to 2^n evaluations of H at each point, a millisecond for n = 8.
-Symmetries find_symmetries(const Dynamics& dynamics);
-
-// Throws TextError where H_y = 0 cannot be solved at any of some random points, saying why, and for
-// symmetries that the text claims and H does not have.
-void check_text(const SceneSource& scene,
-                const Formulation& formulation,
-                const Dynamics& dynamics,
-                std::string_view text,
-                const std::string& file);
 
 }  // namespace carnot::language

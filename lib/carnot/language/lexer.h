@@ -13,7 +13,7 @@ struct Token {
   enum class Kind {
     kName,
     kNumber,
-    kMark,     // one of + - * / ^ ' ( ) [ ] , ; : = > < { }, or --, ->, >=
+    kMark,     // one of + - * / ^ ' ( ) [ ] , ; : = > <, or --, ->, >=
     kText,     // "..."
     kLineEnd,  // of a statement: none inside brackets
     kEnd,
@@ -25,8 +25,8 @@ struct Token {
   Place place{};
 };
 
-// The tokens of a text, the last of them kEnd; a token kBad is the last one, too. `comments`, if
-// not null, gets the comment of the first line.
+// The tokens of a text, the last of them kEnd; a token kBad is the last one, too. `first_comment`,
+// if not null, gets the comment of the first line.
 std::vector<Token> tokens_of(std::string_view text, std::string* first_comment = nullptr);
 
 }  // namespace carnot::language

@@ -123,7 +123,7 @@ class TapeBuilder {
         break;
       case Operation::kSin:
       case Operation::kCos:
-        result = circular(node, id);
+        result = circular(node);
         break;
       case Operation::kWhole:
         result = operand(node.parts[0]);
@@ -146,7 +146,7 @@ class TapeBuilder {
   }
 
   // Where both the sine and the cosine of an angle are wanted, they are found together.
-  Value circular(const Node& node, std::uint32_t id) {
+  Value circular(const Node& node) {
     const auto key = std::pair(node.parts[0].node, node.parts[0].factor);
     const auto sine = sines_.find(key);
     const auto cosine = cosines_.find(key);
@@ -159,7 +159,6 @@ class TapeBuilder {
     const Value c{results_++, 0};
     drafts_.back().second = c.result;
     values_.emplace(is_sine ? cosine->second : sine->second, is_sine ? c : s);
-    (void)id;
     return is_sine ? s : c;
   }
 

@@ -5,7 +5,9 @@
 
 namespace carnot::language {
 
-// Fills the three tables of the system. The functions take a TextBound.
+// Fill the three tables of the system: functions, and then transcription and calls. All functions
+// take a TextBound.
 void connect_calls(TextSystem& system);
+void connect_dynamics(TextSystem& system);
 
 }  // namespace carnot::language

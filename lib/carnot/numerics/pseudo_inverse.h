@@ -17,19 +17,22 @@
 
 namespace carnot {
 
+// Sizes may be Eigen::Dynamic.
 template <class T, int rows, int cols>
 class PseudoInverse {
  public:
   explicit PseudoInverse(const Matrix<T, rows, cols>& a)
-      : w_(a), v_(Matrix<T, cols, cols>::Identity()) {
-    static_cast<void>(orthogonalise_columns(rows, cols, w_.data(), v_.data()));
+      : w_(a), v_(Matrix<T, cols, cols>::Identity(a.cols(), a.cols())), square_(a.cols()) {
+    const int row_count = static_cast<int>(a.rows());
+    const int count = static_cast<int>(a.cols());
+    static_cast<void>(orthogonalise_columns(row_count, count, w_.data(), v_.data()));
     T largest(0);
-    for (int j = 0; j < cols; ++j) {
+    for (int j = 0; j < count; ++j) {
       square_[j] = w_.col(j).squaredNorm();
       largest = std::max(largest, square_[j]);
     }
-    const T round_off = T(rows + cols) * epsilon<T>();
-    for (int j = 0; j < cols; ++j) {
+    const T round_off = T(row_count + count) * epsilon<T>();
+    for (int j = 0; j < count; ++j) {
       // A NaN is kept, so that the solution shows it.
       if (!(square_[j] > round_off * round_off * largest) && square_[j] == square_[j]) {
         square_[j] = T(0);
@@ -39,14 +42,14 @@ class PseudoInverse {
 
   [[nodiscard]] int rank() const {
     int rank = 0;
-    for (int j = 0; j < cols; ++j) rank += square_[j] != T(0) ? 1 : 0;
+    for (int j = 0; j < square_.size(); ++j) rank += square_[j] != T(0) ? 1 : 0;
     return rank;
   }
 
   // Of all x with the least |A x - b|, the one of least norm.
   [[nodiscard]] Vector<T, cols> solve(const Vector<T, rows>& b) const {
-    Vector<T, cols> x = Vector<T, cols>::Zero();
-    for (int j = 0; j < cols; ++j) {
+    Vector<T, cols> x = Vector<T, cols>::Zero(v_.rows());
+    for (int j = 0; j < square_.size(); ++j) {
       if (square_[j] != T(0)) x += (w_.col(j).dot(b) / square_[j]) * v_.col(j);
     }
     return x;
@@ -54,8 +57,8 @@ class PseudoInverse {
 
   // Of all y with the least |A'y - c|, the one of least norm.
   [[nodiscard]] Vector<T, rows> solve_transposed(const Vector<T, cols>& c) const {
-    Vector<T, rows> y = Vector<T, rows>::Zero();
-    for (int j = 0; j < cols; ++j) {
+    Vector<T, rows> y = Vector<T, rows>::Zero(w_.rows());
+    for (int j = 0; j < square_.size(); ++j) {
       if (square_[j] != T(0)) y += (v_.col(j).dot(c) / square_[j]) * w_.col(j);
     }
     return y;
