@@ -487,7 +487,6 @@ class Formulator {
       metric = metric && out_.drift.back().is_zero();
     }
     definite(weight, b, RateStatus::kNotIndexOne);
-    out_.frame = frame;
     if (metric) metric_control(frame, weight);
   }
 

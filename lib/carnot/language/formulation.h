@@ -13,16 +13,16 @@
 //
 //   frame     -H_yy = B'M B, Cholesky.
 //   controls  -H_uu = R, Cholesky.
+//   saddle    y = (v, lambda), -H_yy = (M, -G'; -G, 0). With A = M + gamma G'G, which is positive
+//             definite where M is on ker G, (M x - G'mu, -G x) = (a, b) is solved by
+//             S mu = -b - G A^-1 r,  x = A^-1 (r + G'mu),  r = a - gamma G'b,  S = G A^-1 G'.
+//
 // A holonomic constraint h(q) = 0 is kept as the velocity constraint Dh q' = 0 that follows from
 // it, with multipliers mu: with h = 0 at the start the paths are the same, and H does not see
 // momenta along the rows of Dh. Of those that mean the same, the one with mu = 0 is taken: p +
 // Dh'mu.
 //
-//   saddle    y = (v, lambda), -H_yy = (M, -G'; -G, 0). With A = M + gamma G'G, which is positive
-//             definite where M is on ker G, (M x - G'mu, -G x) = (a, b) is solved by
-//             S mu = -b - G A^-1 r,  x = A^-1 (r + G'mu),  r = a - gamma G'b,  S = G A^-1 G'.
-//
-// Its derivative by z follows from H_yz + H_yy y_z = 0 with the same factors, so that
+// The derivative of y by z follows from H_yz + H_yy y_z = 0 with the same factors, so that
 //
 //   z' = (H_p, -H_q),    d z'/dz = (0 I; -I 0) (H_zz - H_zy H_yy^-1 H_yz).
 //
@@ -72,9 +72,7 @@ struct Formulation {
   SymbolicVector projected;
   std::vector<Check> projected_checks;
   SymbolicVector momentum;
-  // With linear controls: the velocities of them, whose costs are orthonormal, and the drift.
-  std::optional<SymbolicMatrix> frame;
-  SymbolicVector drift;
+  SymbolicVector drift;  // with linear controls: the velocity without them
   std::optional<TranscriptionFormulas> transcription;
   std::optional<Expression> chart;  // of q
   SymbolicVector holonomic;         // h of q; empty: none
