@@ -270,6 +270,48 @@ TEST(Literature, KeplerTransferArrives) {
   expect_near({z[0], z[1], z[2], z[3]}, {-1.5, 0, 0, -1 / std::sqrt(1.5)}, 1e-6);
 }
 
+// The energy of the pole and the cart without a force, and of the pendulum without a torque.
+TEST(Literature, CartsAndPendulumsKeepTheirEnergy) {
+  constexpr double kCart = 2;
+  constexpr double kRod = 0.7;
+  constexpr double kGravity = 1.3;
+  const Dynamics d = make_dynamics(
+      scene("cart-pole").with({{"cart", kCart}, {"rod", kRod}, {"gravity", kGravity}}));
+  const auto energy = [&](const Point& z) {
+    const double vx = z[2] + kRod * z[3] * std::cos(z[1]);
+    const double vy = kRod * z[3] * std::sin(z[1]);
+    return 0.5 * (kCart * z[2] * z[2] + vx * vx + vy * vy) - kGravity * kRod * std::cos(z[1]);
+  };
+  const Point from{0, 0.5, 0.3, 1.2, 0, 0, 0, 0};
+  EXPECT_NEAR(energy(flow(d, from, 2)), energy(from), kRoundOff);
+  const Dynamics pendulum = dynamics("pendulum-swing-up");
+  const Point at = flow(pendulum, {0.5, 1.2, 0, 0}, 2);
+  EXPECT_NEAR(at[1] * at[1] / 2 - std::cos(at[0]), 0.72 - std::cos(0.5), kRoundOff);
+}
+
+TEST(Literature, ARegulatorHasFourRates) {
+  // lambda^4 - 3 lambda^2 + 2 = 0; the eigenvector (x, v, p_x, p_v) has v = lambda x,
+  // p_v = (lambda^2 - 1) x and p_x = v - lambda p_v.
+  const Dynamics d = dynamics("regulator");
+  const double t = 1.5;
+  for (const double lambda : {1.0, -1.0, std::sqrt(2), -std::sqrt(2)}) {
+    const auto eigenvector = [&](double x) {
+      const double p_v = (lambda * lambda - 1) * x;
+      return Point{x, lambda * x, lambda * (x - p_v), p_v};
+    };
+    expect_near(flow(d, eigenvector(1), t), eigenvector(std::exp(lambda * t)), kRoundOff);
+  }
+}
+
+TEST(Literature, AVortexCarriesShipsInCircles) {
+  const Dynamics d = dynamics("vortex");
+  // Without momentum the ship drifts at the rate 1 / (1 + r^2).
+  const double t = 3;
+  const double angle = t / (1 + 4);
+  const Point z = flow(d, {2, 0, 0, 0}, t);
+  expect_near({z[0], z[1]}, {2 * std::cos(angle), 2 * std::sin(angle)}, kRoundOff);
+}
+
 TEST(Literature, AQuadrotorHovers) {
   const Dynamics d = dynamics("planar-quadrotor");
   const Point still{0.3, 0.2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};

@@ -7,16 +7,18 @@
 
 namespace carnot::internal {
 
-DiscreteEquations::DiscreteEquations(const Dynamics& dynamics, double h, int intervals)
+DiscreteEquations::DiscreteEquations(const Dynamics& dynamics,
+                                     double h,
+                                     int intervals,
+                                     double drift)
     : dynamics_(dynamics),
+      lagrangian_(dynamics, h, drift),
       h_(h),
       n_(dynamics.dof),
-      k_(dynamics.transcribed),
+      k_(PathLagrangian::multipliers(dynamics)),
       intervals_(intervals),
       m_(2 * n_ + k_),
-      x_(m_),
-      gradient_(m_),
-      hessian_(m_ * m_),
+      unknowns_(m_),
       middle_(n_),
       velocity_(n_),
       terms_(n_ + k_ + 1),
@@ -30,20 +32,21 @@ double DiscreteEquations::evaluate(const Path& path,
   residual.assign(size(), 0.0);
   if (matrix != nullptr) matrix->clear();
   double largest = 0;
-  for (int i = 0; i < intervals_; ++i) {
-    path.gather(i, k_, x_.data());
-    dynamics_.discrete_lagrangian(
-        h_, x_, gradient_, matrix != nullptr ? hessian_ : std::span<double>());
+  lagrangian_.visit(path, matrix != nullptr, [&](int i, const PathLagrangian::Terms& terms) {
     if (matrix != nullptr && weights.metric != 0) set_slopes(path, i);
+    for (int j = 0; j < n_ && !dynamics_.has_transcription(); ++j) {
+      largest = std::max(largest, std::abs(terms.x[n_ + j] - terms.x[j]));
+    }
+    for (int a = 0; a < m_; ++a) unknowns_[a] = unknown(i, a);
     for (int a = 0; a < m_; ++a) {
-      if (a < 2 * n_) largest = std::max(largest, std::abs(gradient_[a]));
-      const int row = unknown(i, a);
+      if (a < 2 * n_) largest = std::max(largest, std::abs(terms.gradient[a]));
+      const int row = unknowns_[a];
       if (row < 0) continue;
-      residual[row] += gradient_[a];
+      residual[row] += terms.gradient[a];
       for (int b = 0; matrix != nullptr && b < m_; ++b) {
-        const int column = unknown(i, b);
+        const int column = unknowns_[b];
         if (column < 0) continue;
-        double entry = hessian_[a * m_ + b];
+        double entry = terms.hessian[a * m_ + b];
         if (a < 2 * n_ && b < 2 * n_) {
           entry *= weights.hessian;
           if (weights.metric != 0) {
@@ -55,7 +58,7 @@ double DiscreteEquations::evaluate(const Path& path,
         (*matrix)(row, column) += entry;
       }
     }
-  }
+  });
   return largest;
 }
 

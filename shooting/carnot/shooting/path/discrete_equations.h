@@ -1,6 +1,6 @@
 // The equations of a discrete extremal.
 //
-// A path with multipliers is a discrete extremal when, with F_d of midpoint_transcription.h,
+// A path with multipliers is a discrete extremal when, with F_d of path_lagrangian.h,
 //
 //   D2 F_d(q_{i-1}, q_i, lambda_{i-1}) + D1 F_d(q_i, q_{i+1}, lambda_i) = 0,   D3 F_d = 0,
 //
@@ -15,13 +15,15 @@
 #include "carnot/dynamics.h"
 #include "carnot/shooting/linear/banded_lu.h"
 #include "carnot/shooting/path/path.h"
+#include "carnot/shooting/path/path_lagrangian.h"
 
 namespace carnot::internal {
 
 class DiscreteEquations {
  public:
-  // `h` is the length of an interval. Keeps a reference to the dynamics.
-  DiscreteEquations(const Dynamics& dynamics, double h, int intervals);
+  // `h` is the length of an interval, and `drift` that of path_lagrangian.h. Keeps a reference to
+  // the dynamics.
+  DiscreteEquations(const Dynamics& dynamics, double h, int intervals, double drift = 1);
 
   [[nodiscard]] int size() const { return intervals_ * k_ + (intervals_ - 1) * n_; }
   [[nodiscard]] BandedLu matrix() const { return {size(), band(), band()}; }
@@ -35,7 +37,8 @@ class DiscreteEquations {
     double hessian = 1;
     double metric = 0;
   };
-  // Residual at `path`; fills the matrix too where one is given. Returns the largest momentum.
+  // Residual at `path`; fills the matrix too where one is given. Returns the largest momentum;
+  // where the defects v - H_p are equations too, the longest way in an interval if that is larger.
   double evaluate(const Path& path,
                   std::vector<double>& residual,
                   BandedLu* matrix,
@@ -58,14 +61,13 @@ class DiscreteEquations {
   void set_slopes(const Path& path, int i);
 
   const Dynamics& dynamics_;
+  PathLagrangian lagrangian_;
   double h_;
   int n_;
   int k_;
   int intervals_;
   int m_;
-  std::vector<double> x_;
-  std::vector<double> gradient_;
-  std::vector<double> hessian_;
+  std::vector<int> unknowns_;  // of the arguments of one interval
   std::vector<double> middle_;
   std::vector<double> velocity_;
   std::vector<double> terms_;

@@ -4,24 +4,21 @@
 #include <cmath>
 #include <span>
 
+#include "carnot/shooting/path/path_lagrangian.h"
+
 namespace carnot::internal {
 
 void fill_momenta(const Dynamics& dynamics, double h, Path& path) {
   const int n = dynamics.dof;
-  const int k = dynamics.transcribed;
   path.p.assign(path.q.size(), 0);
-  std::vector<double> x(2 * n + k);
-  std::vector<double> gradient(2 * n + k);
-  for (int i = 0; i < path.intervals; ++i) {
-    path.gather(i, k, x.data());
-    dynamics.discrete_lagrangian(h, x, gradient);
+  PathLagrangian(dynamics, h).visit(path, false, [&](int i, const PathLagrangian::Terms& terms) {
     const double at_left = i == 0 ? 1 : 0.5;
     const double at_right = i + 1 == path.intervals ? 1 : 0.5;
     for (int j = 0; j < n; ++j) {
-      path.p[i * n + j] -= at_left * gradient[j];
-      path.p[(i + 1) * n + j] += at_right * gradient[n + j];
+      path.p[i * n + j] -= at_left * terms.gradient[j];
+      path.p[(i + 1) * n + j] += at_right * terms.gradient[n + j];
     }
-  }
+  });
 }
 
 bool same_chart(const Dynamics& dynamics, const double* a, const double* b) {
@@ -54,19 +51,7 @@ bool skims_chart_end(const Dynamics& dynamics, const Path& path) {
 }
 
 double discrete_action(const Dynamics& dynamics, double h, const Path& path) {
-  const int n = path.dof;
-  std::vector<double> middle(n), velocity(n), terms(n + dynamics.transcribed + 1);
-  double action = 0;
-  for (int i = 0; i < path.intervals; ++i) {
-    for (int j = 0; j < n; ++j) {
-      middle[j] = 0.5 * (path.configuration(i)[j] + path.configuration(i + 1)[j]);
-      velocity[j] = (path.configuration(i + 1)[j] - path.configuration(i)[j]) / h;
-    }
-    if (!dynamics.midpoint(middle, velocity, terms)) continue;
-    for (int j = 0; j < n; ++j) action += 0.5 * h * terms[j] * terms[j];
-    action -= h * terms[n + dynamics.transcribed];
-  }
-  return action;
+  return PathLagrangian(dynamics, h).action(path);
 }
 
 void Path::gather(int i, int multipliers, double* x) const {

@@ -1,0 +1,117 @@
+#include "carnot/shooting/path/path_lagrangian.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace carnot::internal {
+
+PathLagrangian::PathLagrangian(const Dynamics& dynamics, double h, double drift)
+    : dynamics_(dynamics),
+      h_(h),
+      n_(dynamics.dof),
+      k_(multipliers(dynamics)),
+      x_(2 * n_ + k_),
+      gradient_(x_.size()),
+      hessian_(x_.size() * x_.size()),
+      middle_(n_),
+      velocity_(n_) {
+  if (dynamics.has_transcription()) {
+    values_.resize(n_ + k_ + 1);
+  } else {
+    terms_.emplace(dynamics, drift);
+  }
+}
+
+void PathLagrangian::set_middle(const Path& path, int i) {
+  const double* left = path.configuration(i);
+  const double* right = path.configuration(i + 1);
+  for (int j = 0; j < n_; ++j) {
+    middle_[j] = 0.5 * (left[j] + right[j]);
+    velocity_[j] = (right[j] - left[j]) / h_;
+  }
+}
+
+int PathLagrangian::load(const Path& path, int first, HamiltonianTerms::Order order) {
+  const int count = std::min(HamiltonianTerms::kPoints, path.intervals - first);
+  for (int point = 0; point < count; ++point) {
+    set_middle(path, first + point);
+    const double t = (first + point + 0.5) * h_;
+    terms_->set(point, t, middle_.data(), &path.lambda[(first + point) * k_]);
+  }
+  terms_->evaluate(count, order, first / HamiltonianTerms::kPoints);
+  return count;
+}
+
+void PathLagrangian::visit(const Path& path,
+                           bool second,
+                           const std::function<void(int, const Terms&)>& visit) {
+  const std::span<double> hessian = second ? hessian_ : std::span<double>();
+  const auto order = second ? HamiltonianTerms::Order::kSecond : HamiltonianTerms::Order::kFirst;
+  for (int first = 0; first < path.intervals;) {
+    const int count = terms_ ? load(path, first, order) : 1;
+    for (int point = 0; point < count; ++point) {
+      const int i = first + point;
+      path.gather(i, k_, x_.data());
+      if (terms_) {
+        set_middle(path, i);
+        set_gradient(point, &path.lambda[i * k_]);
+        if (second) set_hessian(point);
+      } else {
+        dynamics_.discrete_lagrangian(h_, x_, gradient_, hessian);
+      }
+      visit(i, {x_, gradient_, hessian});
+    }
+    first += count;
+  }
+}
+
+void PathLagrangian::set_gradient(int point, const double* p) {
+  for (int j = 0; j < n_; ++j) {
+    const double force = 0.5 * h_ * terms_->by_q(point, j);
+    gradient_[j] = -p[j] - force;
+    gradient_[n_ + j] = p[j] - force;
+    gradient_[2 * n_ + j] = h_ * (velocity_[j] - terms_->by_p(point, j));
+  }
+}
+
+void PathLagrangian::set_hessian(int point) {
+  const int size = 3 * n_;
+  for (int i = 0; i < n_; ++i) {
+    for (int j = 0; j < n_; ++j) {
+      const double by_nodes = -0.25 * h_ * terms_->qq(point, i, j);
+      const double same = i == j ? 1 : 0;
+      const double mixed = -0.5 * h_ * terms_->qp(point, i, j);
+      for (int a = 0; a < 2; ++a) {
+        for (int b = 0; b < 2; ++b) hessian_[(a * n_ + i) * size + b * n_ + j] = by_nodes;
+        const double entry = mixed + (a == 0 ? -same : same);
+        hessian_[(a * n_ + i) * size + 2 * n_ + j] = entry;
+        hessian_[(2 * n_ + j) * size + a * n_ + i] = entry;
+      }
+      hessian_[(2 * n_ + i) * size + 2 * n_ + j] = -h_ * terms_->pp(point, i, j);
+    }
+  }
+}
+
+double PathLagrangian::action(const Path& path) {
+  double action = 0;
+  for (int first = 0; terms_ && first < path.intervals;) {
+    const int count = load(path, first, HamiltonianTerms::Order::kFirst);
+    for (int point = 0; point < count; ++point) {
+      double lagrangian = -terms_->value(point);
+      for (int j = 0; j < n_; ++j) {
+        lagrangian += path.lambda[(first + point) * k_ + j] * terms_->by_p(point, j);
+      }
+      if (std::isfinite(lagrangian)) action += h_ * lagrangian;
+    }
+    first += count;
+  }
+  for (int i = 0; !terms_ && i < path.intervals; ++i) {
+    set_middle(path, i);
+    if (!dynamics_.midpoint(middle_, velocity_, values_)) continue;
+    for (int j = 0; j < n_; ++j) action += 0.5 * h_ * values_[j] * values_[j];
+    action -= h_ * values_.back();
+  }
+  return action;
+}
+
+}  // namespace carnot::internal

@@ -1,0 +1,68 @@
+// The discrete Lagrangian of a path in the midpoint transcription, for scenes of every kind.
+//
+// With velocity constraints and a transcription of their own, it is that of
+// midpoint_transcription.h, and its multipliers are those of the constraints. For every other kind
+//
+//   F_d(q0, q1, lambda) = h [lambda.v - H(t, qm, lambda)],   qm = (q0 + q1)/2,   v = (q1 - q0)/h,
+//
+// at the middle t of the interval. Its n multipliers are the momenta there: D3 F_d = 0 is v = H_p.
+// Stationary sums of F_d with momenta p0 = -D1 F_d, p1 = D2 F_d at the nodes are again the midpoint
+// rule of the index-1 system (McLachlan et al. 2013, Prop. 4, with one stage).
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "carnot/dynamics.h"
+#include "carnot/shooting/path/path.h"
+#include "carnot/shooting/problem/hamiltonian_terms.h"
+
+namespace carnot::internal {
+
+class PathLagrangian {
+ public:
+  // The terms of one interval: F_d by x = (q0, q1, lambda).
+  struct Terms {
+    std::span<const double> x;
+    std::span<const double> gradient;
+    std::span<const double> hessian;  // row-major; empty where it is not wanted
+  };
+
+  // For intervals of length h. `drift` as in hamiltonian_terms.h, 1 where there is a transcription.
+  // Keeps a reference to the dynamics.
+  PathLagrangian(const Dynamics& dynamics, double h, double drift = 1);
+
+  // Number of multipliers of an interval.
+  [[nodiscard]] static int multipliers(const Dynamics& dynamics) {
+    return dynamics.has_transcription() ? dynamics.transcribed : dynamics.dof;
+  }
+
+  // Calls visit(i, terms) for each interval in order. Terms that cannot be evaluated are NaN.
+  void visit(const Path& path, bool second, const std::function<void(int, const Terms&)>& visit);
+  // sum h L at the middles, without those where it cannot be evaluated.
+  double action(const Path& path);
+
+ private:
+  // Sets middle_ and velocity_.
+  void set_middle(const Path& path, int i);
+  // Evaluates terms_ at the middles of the intervals from `first` on. Returns how many there are.
+  int load(const Path& path, int first, HamiltonianTerms::Order order);
+  void set_gradient(int point, const double* p);
+  void set_hessian(int point);
+
+  const Dynamics& dynamics_;
+  double h_;
+  int n_;
+  int k_;
+  std::optional<HamiltonianTerms> terms_;  // where there is no transcription
+  std::vector<double> x_;
+  std::vector<double> gradient_;
+  std::vector<double> hessian_;
+  std::vector<double> middle_;
+  std::vector<double> velocity_;
+  std::vector<double> values_;  // of the transcription
+};
+
+}  // namespace carnot::internal
