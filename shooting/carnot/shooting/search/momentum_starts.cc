@@ -5,28 +5,9 @@
 #include <random>
 
 #include "carnot/shooting/problem/manifold.h"
+#include "carnot/shooting/problem/reach.h"
 
 namespace carnot::internal {
-namespace {
-
-// The momentum of the velocity of the straight line, made admissible; the velocity itself where
-// there is no such momentum.
-std::vector<double> straight_momentum(const BoundaryValueProblem& problem) {
-  const Dynamics& dynamics = problem.dynamics;
-  std::vector<double> velocity(dynamics.dof);
-  for (int j = 0; j < dynamics.dof; ++j) {
-    velocity[j] = (problem.to[j] - problem.from[j]) / problem.time;
-  }
-  std::vector<double> admissible = velocity;
-  std::vector<double> p(dynamics.dof);
-  const std::vector<double> lambda(dynamics.multipliers, 0.0);
-  dynamics.momentum(0, problem.from, admissible, lambda, p);
-  const bool finite = std::all_of(p.begin(), p.end(), [](double x) { return std::isfinite(x); });
-  return finite ? p : velocity;
-}
-
-}  // namespace
-
 std::vector<double> momentum_start(const BoundaryValueProblem& problem, std::uint64_t seed, int i) {
   constexpr double kSmallest = 0.1;
   constexpr double kLargest = 10;

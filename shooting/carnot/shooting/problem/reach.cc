@@ -1,0 +1,101 @@
+#include "carnot/shooting/problem/reach.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "carnot/shooting/linear/dense.h"
+#include "carnot/shooting/problem/hamiltonian_terms.h"
+
+namespace carnot::internal {
+namespace {
+
+using Eigen::MatrixXd;
+
+// About the largest size of an eigenvalue: |A^16|^(1/16).
+double spectral_radius(const MatrixXd& a) {
+  double scale = a.norm();
+  if (!(scale > 0)) return 0;
+  MatrixXd power = a / scale;
+  double log_radius = std::log(scale);
+  double exponent = 1;
+  for (int k = 0; k < 4; ++k) {
+    power = product(power, power);
+    exponent *= 2;
+    const double size = power.norm();
+    if (!(size > 1e-200)) return 0;
+    power /= size;
+    log_radius += std::log(size) / exponent;
+  }
+  return std::exp(log_radius);
+}
+
+}  // namespace
+
+std::vector<double> straight_momentum(const BoundaryValueProblem& problem) {
+  const Dynamics& dynamics = problem.dynamics;
+  std::vector<double> velocity(dynamics.dof);
+  for (int j = 0; j < dynamics.dof; ++j) {
+    velocity[j] = (problem.to[j] - problem.from[j]) / problem.time;
+  }
+  std::vector<double> admissible = velocity;
+  std::vector<double> p(dynamics.dof);
+  const std::vector<double> lambda(dynamics.multipliers, 0.0);
+  dynamics.momentum(0, problem.from, admissible, lambda, p);
+  const bool finite = std::all_of(p.begin(), p.end(), [](double x) { return std::isfinite(x); });
+  return finite ? p : velocity;
+}
+
+Reach reach_of(const BoundaryValueProblem& problem) {
+  constexpr int kSteps = 512;
+  constexpr double kTurn = 2;  // a time scale: so much for the integral of the fastest rate
+  const int n = problem.dynamics.dof;
+  const double h = problem.time / kSteps;
+  HamiltonianTerms terms(problem.dynamics);
+  Reach reach;
+  reach.rest.assign(n, 0.0);
+  terms.set(0, 0, problem.from.data(), reach.rest.data());
+  if (!terms.evaluate(1, HamiltonianTerms::Order::kSecond)) reach.rest = straight_momentum(problem);
+  const std::vector<double>& rest = reach.rest;
+  std::vector<double> q = problem.from;
+  MatrixXd gramian = MatrixXd::Zero(n, n);
+  reach.sizes.assign(n, 0.0);
+  double followed = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    terms.set(0, i * h, q.data(), rest.data());
+    if (!terms.evaluate(1, HamiltonianTerms::Order::kSecond)) break;
+    MatrixXd a(n, n);
+    MatrixXd d(n, n);
+    for (int r = 0; r < n; ++r) {
+      for (int c = 0; c < n; ++c) {
+        a(r, c) = terms.qp(0, c, r);
+        d(r, c) = terms.pp(0, r, c);
+      }
+    }
+    const double radius = spectral_radius(a);
+    if (!std::isfinite(radius)) break;
+    // The Gramian over the first time scale, or over all of [0, T] where the drift is slower.
+    if (i == 0 || reach.turns < kTurn) {
+      const MatrixXd ha = h * a;
+      const MatrixXd f = MatrixXd::Identity(n, n) + ha + 0.5 * product(ha, ha);
+      gramian = product(product(f, gramian), f.transpose()) + h * d;
+      for (int j = 0; j < n; ++j) reach.sizes[j] = gramian(j, j) / ((i + 1) * h);
+    }
+    reach.turns += h * radius;
+    followed = (i + 1) * h;
+    // Heun's rule is enough for sizes.
+    std::vector<double> ahead(n);
+    std::vector<double> rate(n);
+    for (int j = 0; j < n; ++j) rate[j] = terms.by_p(0, j);
+    for (int j = 0; j < n; ++j) ahead[j] = q[j] + h * rate[j];
+    terms.set(0, (i + 1) * h, ahead.data(), rest.data());
+    if (!terms.evaluate(1, HamiltonianTerms::Order::kFirst)) break;
+    for (int j = 0; j < n; ++j) q[j] += 0.5 * h * (rate[j] + terms.by_p(0, j));
+  }
+  if (followed > 0) reach.turns *= problem.time / followed;
+  // A coordinate that controls do not reach so soon.
+  const double largest = *std::max_element(reach.sizes.begin(), reach.sizes.end());
+  for (double& size : reach.sizes) size = std::max(size, 1e-6 * (largest > 0 ? largest : 1));
+  return reach;
+}
+
+}  // namespace carnot::internal

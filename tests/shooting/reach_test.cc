@@ -1,0 +1,56 @@
+// What controls reach along the drift.
+#include "carnot/shooting/problem/reach.h"
+
+#include <gtest/gtest.h>
+
+#include "shooting/drift_problems.h"
+
+namespace carnot::internal::reach_test {
+namespace {
+
+constexpr double kGrid = 1e-3;  // relative; sizes need no more
+
+TEST(Reach, IsTheGramianOfADoubleIntegrator) {
+  // W = (t^3/3, t^2/2; t^2/2, t); nothing turns.
+  for (const double time : {0.5, 4.0}) {
+    const Reach reach = reach_of({test::double_integrator(), {0, 0}, {1, 0}, time});
+    EXPECT_NEAR(reach.sizes[0], time * time / 3, kGrid * time * time);
+    EXPECT_NEAR(reach.sizes[1], 1, kGrid);
+    EXPECT_EQ(reach.turns, 0);
+    EXPECT_EQ(reach.rest, (std::vector<double>{0, 0}));
+  }
+}
+
+TEST(Reach, CountsTheTurnsOfAnOscillator) {
+  const Dynamics oscillator =
+      test::from_text("coordinates x, v\ncontrols u\nx' = 3 v\nv' = u - 3 x\ncost = u^2 / 2\n");
+  const Reach reach = reach_of({oscillator, {1, 0}, {0, 0}, 10});
+  constexpr double kAbout = 0.03;  // relative: the 16th root of a norm of the 16th power
+  EXPECT_NEAR(reach.turns, 30, 30 * kAbout);
+}
+
+TEST(Reach, DoesNotDependOnUnits) {
+  // Metres and centimetres.
+  const std::string head = "coordinates x, v\ncontrols u\nv' = u\ncost = u^2 / 2\n";
+  const Dynamics metres = test::from_text(head + "x' = v\n");
+  const Dynamics centimetres = test::from_text(head + "x' = 100 v\n");
+  const Reach a = reach_of({metres, {0, 0}, {1, 0}, 2});
+  const Reach b = reach_of({centimetres, {0, 0}, {100, 0}, 2});
+  EXPECT_NEAR(b.sizes[0], 1e4 * a.sizes[0], kGrid * b.sizes[0]);
+  EXPECT_NEAR(b.sizes[1], a.sizes[1], kGrid);
+}
+
+TEST(Reach, ReplacesARestThatDoesNotExist) {
+  // H = |p| has no derivative without momentum.
+  const Dynamics dynamics =
+      test::from_text("coordinates x, y\nlagrangian = -sqrt(1 - x'^2 - y'^2)\n");
+  const Reach regular = reach_of({dynamics, {0, 0}, {0.3, 0.4}, 1});
+  EXPECT_EQ(regular.rest, (std::vector<double>{0, 0}));
+  const std::vector<double> p = straight_momentum({dynamics, {0, 0}, {0.3, 0.4}, 1});
+  constexpr double kRoundOff = 1e-14;
+  EXPECT_NEAR(p[0], 0.3 / std::sqrt(0.75), kRoundOff);
+  EXPECT_NEAR(p[1], 0.4 / std::sqrt(0.75), kRoundOff);
+}
+
+}  // namespace
+}  // namespace carnot::internal::reach_test
