@@ -14,6 +14,11 @@ namespace carnot::internal {
 struct DiscreteNewtonOptions {
   int max_iterations = 20;
   double tolerance = 1e-9;  // residual relative to its size at the first iterate's momenta
+  int most_damped = 1000;   // steps that are halved, before it gives up
+  double drift = 1;         // see path_lagrangian.h
+  // The equations are to leave this share of these numbers; null: zero.
+  const std::vector<double>* residual = nullptr;
+  double residual_share = 0;
 };
 
 struct DiscreteNewton {
@@ -27,5 +32,8 @@ struct DiscreteNewton {
 DiscreteNewton tighten(const BoundaryValueProblem& problem,
                        const DiscreteNewtonOptions& options,
                        Path& path);
+
+// What the equations of a discrete extremal leave at `path`.
+std::vector<double> residual_of(const BoundaryValueProblem& problem, const Path& path);
 
 }  // namespace carnot::internal

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "carnot/shooting/path/discrete_newton.h"
+#include "carnot/shooting/path/homotopy.h"
 #include "carnot/shooting/path/relaxation.h"
 
 namespace carnot::internal {
@@ -36,6 +37,23 @@ Path extrapolated(const Path& coarse, const Path& fine) {
   return path;
 }
 
+// Newton's method with what its equations leave at the start taken back step by step. It reaches
+// further: a long way, on which the coarse grid is late by a part of a revolution.
+bool carried(const BoundaryValueProblem& problem, Path& path) {
+  constexpr double kOnTheWay = 1e-5;  // tolerance of the solutions on the way
+  const std::vector<double> residual = residual_of(problem, path);
+  const auto correct = [&](double s, Path& trial) {
+    DiscreteNewtonOptions newton;
+    newton.max_iterations = 8;
+    newton.most_damped = 2;
+    newton.residual = &residual;
+    newton.residual_share = 1 - s;
+    if (s < 1) newton.tolerance = kOnTheWay;
+    return tighten(problem, newton, trial).converged;
+  };
+  return follow({}, correct, path);
+}
+
 // The discrete extremal near `coarse` with twice as many intervals: by Newton's method or, where
 // the coarse one is too far away for it, by relaxing once more.
 std::optional<Path> finer(const BoundaryValueProblem& problem, const Path& coarse) {
@@ -46,6 +64,10 @@ std::optional<Path> finer(const BoundaryValueProblem& problem, const Path& coars
   Path path = halved(coarse);
   if (walled && !in_one_chart(problem.dynamics, path)) return std::nullopt;
   if (tighten(problem, newton, path).converged) return path;
+  if (!problem.dynamics.has_transcription()) {
+    path = halved(coarse);
+    return carried(problem, path) ? std::optional(path) : std::nullopt;
+  }
   if (path.intervals > kMostRelaxed) return std::nullopt;
   RelaxationOptions relaxation;
   relaxation.penalty = 100;  // keeps the path near the constraints that it nearly satisfies

@@ -6,6 +6,10 @@
 // order h^4 (Richardson). Boundary layers, such as that of a short steering axle on a long way,
 // need many intervals; most problems do not. A coarse extremal that has no fine counterpart is an
 // artefact of the grid and ends here.
+//
+// On a long way with drift a coarse grid is late by a part of a revolution. Where Newton's method
+// does not find the fine counterpart at once, it follows it while what its equations leave at the
+// start is taken back (homotopy.h).
 #pragma once
 
 #include "carnot/shooting/boundary_value_problem.h"
