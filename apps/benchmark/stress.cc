@@ -25,7 +25,8 @@ namespace {
 
 constexpr const char* kStressFooter = R"(
 From the origin to targets drawn uniformly, positions within 3, angles within pi, on the cover and
-on the near side of singular coordinates, or from one random point of a manifold to another; each
+on the near side of singular coordinates, or from one random point of a manifold to another; where
+a drift or a force decides what can be reached, to the end of a motion with random momenta; each
 the default search for one geodesic on one thread, many at a time. "solved" has been verified by an
 independent integration, at knots where the end point is too sensitive. Those that are not are
 counted by reason: the codes of `carnot geodesic`, and irregular-end where the constraints are
@@ -63,7 +64,8 @@ Trial try_target(const Dynamics& dynamics, std::uint64_t seed, int i) {
   Trial trial;
   trial.from.assign(dynamics.dof, 0.0);
   if (dynamics.holonomic > 0) trial.from = random_target(dynamics, ~seed, i);
-  trial.to = random_target(dynamics, seed, i);
+  const bool drifts = !dynamics.has_transcription() && dynamics.holonomic == 0;
+  trial.to = drifts ? reachable_target(dynamics, seed, i) : random_target(dynamics, seed, i);
   GeodesicOptions options;
   options.seed = seed;
   options.threads = 1;

@@ -47,7 +47,11 @@ Json report_json(const GeodesicRequest& request,
   json["starts"] = report.starts;
   json["converged_starts"] = report.converged_starts;
   json["distinct_hit"] = report.distinct_hit;
-  json["missed_estimate"] = report.missed_estimate;
+  if (report.missed_estimate) {
+    json["missed_estimate"] = *report.missed_estimate;
+  } else {
+    json["missed_estimate"] = nullptr;
+  }
   json["elapsed_seconds"] = report.elapsed_seconds;
   return json;
 }

@@ -31,4 +31,21 @@ inline std::vector<double> random_target(const Dynamics& dynamics, std::uint64_t
   return to;
 }
 
+// Where the motion from the origin ends after time 1, with a random momentum whose entries are
+// normal. Empty where none of many can be followed.
+inline std::vector<double> reachable_target(const Dynamics& dynamics, std::uint64_t seed, int i) {
+  constexpr int kDraws = 100;
+  constexpr long kSteps = 64;
+  std::seed_seq sequence{seed, seed >> 32U, static_cast<std::uint64_t>(i)};
+  std::mt19937_64 random(sequence);
+  std::normal_distribution<double> normal;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    std::vector<double> z(2 * dynamics.dof, 0.0);
+    for (int j = 0; j < dynamics.dof; ++j) z[dynamics.dof + j] = normal(random);
+    if (!dynamics.flow(StepPlan::equal(0, 1, kSteps), z).completed()) continue;
+    return {z.begin(), z.begin() + dynamics.dof};
+  }
+  return {};
+}
+
 }  // namespace carnot::apps

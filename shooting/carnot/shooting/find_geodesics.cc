@@ -65,7 +65,8 @@ struct Found {
   int starts = 0;
   int converged = 0;
   bool finished = true;
-  Failure failure;  // why there is none, of the first image
+  bool counted = true;  // hits tell how many were missed
+  Failure failure;      // why there is none, of the first image
 };
 
 void search_image(const GeodesicOptions& options, Found& found) {
@@ -88,6 +89,7 @@ void search_image(const GeodesicOptions& options, Found& found) {
   }
   const std::vector<int> hits = search.hits();
   found.hits.insert(found.hits.end(), hits.begin(), hits.end());
+  found.counted = found.counted && search.counts();
   found.starts += search.starts();
   found.converged += search.converged();
   if (found.list.empty() && found.failure.reason == Reason::kNone) {
@@ -149,7 +151,7 @@ GeodesicReport find_geodesics(const BoundaryValueProblem& asked, const GeodesicO
   report.starts = found.starts;
   report.converged_starts = found.converged;
   report.distinct_hit = static_cast<int>(found.hits.size());
-  report.missed_estimate = missed_estimate(found.hits);
+  if (found.counted) report.missed_estimate = missed_estimate(found.hits);
   report.status = list.empty() ? GeodesicStatus::kNotConverged : GeodesicStatus::kConverged;
   if (list.empty()) {
     report.reason = found.failure.reason;

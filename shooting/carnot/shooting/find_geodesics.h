@@ -19,12 +19,20 @@
 //
 // Two more ways lead in where the best extremal is no minimum, or where more than the best is
 // wanted: ways down from saddles (path/descent.h) and near hits of random momenta (search/sweep.h).
-// What they give is tightened and polished as well. Scenes without a transcription start from
-// random momenta, which are joined at knots and verified. search/search.h decides what is done
-// next, and when it is enough. What is distinct is kept, least action first. All randomness comes
-// from `seed`; the answer does not depend on the number of threads.
+// What they give is tightened and polished as well. Scenes with drift, and all others that are no
+// least-squares problem, come to discrete extremals by other starts (search/drift_starts.h):
+//
+//   drift at another speed             |  a random path, and fictitious controls
+//      |  carry    path/homotopy.h     |     |  reduce    path/action_descent.h
+//   a discrete extremal                   a discrete extremal
+//
+// Where holonomic constraints need forces, random momenta are joined at knots and verified.
+// search/search.h decides what is done next, and when it is enough. What is distinct is kept, least
+// action first. All randomness comes from `seed`; the answer does not depend on the number of
+// threads.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,8 +54,10 @@ struct GeodesicReport {
   std::vector<Geodesic> geodesics;
   int starts = 0;
   int converged_starts = 0;
-  int distinct_hit = 0;        // extremals, up to symmetry, that starts led to
-  double missed_estimate = 0;  // how many more there may be, by Chao's estimate
+  int distinct_hit = 0;  // extremals, up to symmetry, that starts led to
+  // How many more there may be, by Chao's estimate. Nothing where starts say too little for one: of
+  // scenes without a transcription, unless the least action was hit often and nothing once only.
+  std::optional<double> missed_estimate;
   double elapsed_seconds = 0;
 };
 

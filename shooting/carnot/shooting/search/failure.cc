@@ -135,7 +135,7 @@ Failure explain_failure(const BoundaryValueProblem& problem,
             "the guess did not lead to an extremal (" + end_point(problem, options.guess).text +
                 "): leave --guess out to search from paths"};
   }
-  if (!problem.dynamics.has_transcription()) {
+  if (problem.dynamics.forced > 0) {
     return {joined ? search.furthest() : Reason::kNoStartConverged,
             "no momentum led to an extremal (" + tried + regularity(problem) +
                 "): try more --starts, another --seed, a --guess, or a target less far away"};

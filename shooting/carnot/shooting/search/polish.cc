@@ -80,8 +80,10 @@ Outcome polish(const BoundaryValueProblem& problem,
   // From a grid that is fine enough Newton's method takes two or three iterations. Where it takes
   // more a finer grid, which is cheaper than the flow, comes first.
   constexpr std::array kPatience{4, 8, 12};
+  constexpr int kDoublings = 8;  // of long ways, at least
   RefinementOptions refinement;
   refinement.enough = 4e-2;
+  refinement.max_intervals = std::max(refinement.max_intervals, kDoublings * path.intervals);
   Outcome outcome{std::nullopt, Reason::kNotRefined};
   for (const int patience : kPatience) {
     const Refinement refined = refine(problem, refinement, path);

@@ -29,9 +29,19 @@ Search::Search(const BoundaryValueProblem& problem, const GeodesicOptions& optio
       options_(options),
       threads_(thread_count(options.threads)),
       near_(NearTarget::of(problem)),
-      policy_(options, problem.dynamics.has_transcription(), near_.has_value()),
+      policy_(options, problem.dynamics.forced == 0, near_.has_value()),
       extremals_(partners_for(problem, options, policy_)),
-      discrete_(problem) {}
+      discrete_(problem) {
+  if (problem.dynamics.has_transcription() || problem.dynamics.forced > 0) return;
+  drift_.emplace(problem, options.seed);
+  intervals_ = drift_->intervals();
+  policy_.plan_for(drift_->scaled(), drift_->actuated());
+}
+
+bool Search::turn_of_momenta() const {
+  constexpr int kTurn = 16;  // starts
+  return extremals_.empty() && tally_.drawn / kTurn % 2 == 1;
+}
 
 bool Search::run() {
   constexpr int kMaxDescents = 4;  // sweeps below an extremal that is no minimum
@@ -46,6 +56,8 @@ bool Search::run() {
       if (!descend_round()) sweep_round(descents++);
     } else if (by_paths) {
       relax_round(policy_.round(tally_));
+    } else if (drift_ && !turn_of_momenta()) {
+      drift_round(policy_.round(tally_));
     } else {
       momentum_round(policy_.round(tally_));
     }
@@ -75,6 +87,14 @@ std::vector<int> Search::hits() const {
   const std::vector<int> given_up = discrete_.hits_given_up();
   hits.insert(hits.end(), given_up.begin(), given_up.end());
   return hits;
+}
+
+bool Search::counts() const {
+  constexpr int kOften = 5;
+  if (problem_.dynamics.has_transcription()) return true;
+  const std::vector<int> counted = hits();
+  return !extremals_.empty() && extremals_.competition().hits >= kOften &&
+         std::count(counted.begin(), counted.end(), 1) == 0;
 }
 
 bool Search::settled() {

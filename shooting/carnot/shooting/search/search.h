@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "carnot/shooting/search/discrete_list.h"
+#include "carnot/shooting/search/drift_starts.h"
 #include "carnot/shooting/search/relaxed_start.h"
 #include "carnot/shooting/search/stopping_policy.h"
 
@@ -33,6 +34,9 @@ class Search {
   }
   // How often each was hit, up to symmetry, and how often each that was given up.
   [[nodiscard]] std::vector<int> hits() const;
+  // Whether they tell how many were missed. Starts of drift find minima, and some find none but
+  // one: there the least must have been hit often, and nothing once only.
+  [[nodiscard]] bool counts() const;
   [[nodiscard]] int starts() const { return tally_.starts; }
   [[nodiscard]] int converged() const { return tally_.converged; }
   // How many starts ran into a singularity of the coordinates.
@@ -55,8 +59,12 @@ class Search {
   // Whether the search has seen enough. Notes whether the best extremal is past a conjugate time:
   // then a nearby path is better, and the search goes on from there.
   [[nodiscard]] bool settled();
+  // Whether momenta take turns with starts of drift: while these found nothing.
+  [[nodiscard]] bool turn_of_momenta() const;
   void relax_round(int count);
-  // The same from momenta, where there is no transcription.
+  // The same where the scene has no transcription of its own.
+  void drift_round(int count);
+  // The same from momenta, where forces keep the path on a manifold.
   void momentum_round(int count);
   // Shoots along the straight line. This helps where paths are relaxed to another target.
   void shoot_straight();
@@ -90,7 +98,8 @@ class Search {
   const BoundaryValueProblem& problem_;
   const GeodesicOptions& options_;
   int threads_;
-  std::optional<NearTarget> near_;  // where paths are relaxed to a target further away
+  std::optional<NearTarget> near_;    // where paths are relaxed to a target further away
+  std::optional<DriftStarts> drift_;  // where the scene has no transcription of its own
   StoppingPolicy policy_;
   ExtremalList extremals_;
   DiscreteList discrete_;

@@ -52,6 +52,16 @@ void Search::relax_round(int count) {
   if (artefacts) intervals_ = std::min(2 * intervals_, kMaxIntervals);
 }
 
+void Search::drift_round(int count) {
+  std::vector<RelaxedStart> starts(count);
+  parallel_for(
+      count, threads_, [&](int i) { starts[i] = drift_->start(tally_.drawn + i, intervals_); });
+  tally_.drawn += count;
+  const Polished polished = absorb(starts);
+  const bool artefacts = polished.failed >= kArtefacts && polished.failed > polished.good;
+  if (artefacts) intervals_ = std::min(2 * intervals_, 4 * drift_->intervals());
+}
+
 void Search::shoot_straight() {
   Path line{1, problem_.dynamics.dof, problem_.from, {}, {}};
   line.q.insert(line.q.end(), problem_.to.begin(), problem_.to.end());
@@ -116,7 +126,7 @@ void Search::sweep_round(int round) {
   sweep.seed = options_.seed;
   sweep.round = round;
   // The longest extremals wind more often than a coarse grid sees.
-  sweep.intervals = round % 2 == 0 ? 64 : 160;
+  sweep.intervals = drift_ ? intervals_ : round % 2 == 0 ? 64 : 160;
   sweep.momentum_scale.assign(problem_.dynamics.dof, 0.0);
   // Row j: the momentum of coordinate j in the units of the shortest extremal.
   const Eigen::MatrixXd natural =
@@ -144,8 +154,10 @@ void Search::sweep_round(int round) {
   // as the next shorter one was found with one seed of three.
   const bool farthest = round % 2 == 1 && std::isfinite(options_.max_length);
   longest = farthest ? options_.max_length : std::min(longest, options_.max_length);
-  sweep.lowest = energy_of(0.8 * shortest, problem_.time);
-  sweep.highest = energy_of(longest, problem_.time);
+  if (!drift_) {
+    sweep.lowest = energy_of(0.8 * shortest, problem_.time);
+    sweep.highest = energy_of(longest, problem_.time);
+  }
   std::vector<Path> paths = near_hits(problem_, sweep, threads_);
   std::vector<RelaxedStart> tightened(paths.size());
   parallel_for(static_cast<int>(paths.size()), threads_, [&](int i) {

@@ -33,6 +33,9 @@ constexpr int kMaxBlocked = 2;
 constexpr int kSweeps = 24;
 // Hits of the least action before a search ends.
 constexpr int kEnoughHits = 3;
+// The same where there is drift. Its starts find minima only, and the search has to know that the
+// least of them is the least.
+constexpr int kEnoughDriftHits = 5;
 // Starts that converge before a search ends, for each rival: where there is one, there may be
 // another. It was raised from 5 for problems whose extremals are nearly of one action.
 constexpr int kConvergedPerRival = 8;
@@ -52,7 +55,14 @@ StoppingPolicy::StoppingPolicy(const GeodesicOptions& options, bool by_paths, bo
       limit_(given_ ? options.starts
              : all_ ? kMaxStartsAll
                     : kMaxStarts),
+      enough_hits_(kEnoughHits),
       sweeps_(by_paths && wants_more_ && !given_ ? kSweeps : 0) {}
+
+void StoppingPolicy::plan_for(int scaled, int actuated) {
+  first_ = scaled;
+  enough_hits_ = kEnoughDriftHits;
+  if (!given_) limit_ = std::min(limit_, scaled + actuated);
+}
 
 int StoppingPolicy::left(const SearchTally& tally) const {
   const int in_vain = given_ ? 0 : std::min(tally.blocked, kMaxBlocked * limit_);
@@ -70,15 +80,15 @@ double StoppingPolicy::share(const SearchTally& tally) const {
 }
 
 bool StoppingPolicy::may_end(const SearchTally& tally) const {
-  if (given_ || tally.starts < (near_ ? kMinNear : kMinEasy)) return false;
-  if (tally.starts >= kMinStarts) return true;
+  if (given_ || tally.starts < first_ + (near_ ? kMinNear : kMinEasy)) return false;
+  if (tally.starts >= first_ + kMinStarts) return true;
   return !wants_more_ && tally.converged >= kMostConverged * tally.starts;
 }
 
 bool StoppingPolicy::ends(const SearchTally& tally, const Competition& competition) const {
   const bool clear = competition.rivals <= 1 && competition.hits >= kMostHits * tally.starts;
-  if (tally.starts < kMinStarts && !clear) return false;
-  return competition.hits >= kEnoughHits &&
+  if (tally.starts < first_ + kMinStarts && !clear) return false;
+  return competition.hits >= enough_hits_ &&
          tally.converged >= kConvergedPerRival * competition.rivals;
 }
 

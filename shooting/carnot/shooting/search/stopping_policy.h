@@ -23,6 +23,9 @@ class StoppingPolicy {
   // `by_paths`: starts are paths, not momenta. `near`: paths are relaxed to a target further away.
   StoppingPolicy(const GeodesicOptions& options, bool by_paths, bool near);
 
+  // For starts of drift: so many of scaled drift, which are all tried, and at most so many more.
+  void plan_for(int scaled, int actuated);
+
   // More than the extremal of least action.
   [[nodiscard]] bool wants_more() const { return wants_more_; }
   // Fewer than asked for.
@@ -50,6 +53,8 @@ class StoppingPolicy {
   bool given_;  // the number of starts is that of the options
   bool near_;
   int limit_;
+  int first_ = 0;  // starts that are tried in any case
+  int enough_hits_;
   int sweeps_;
 };
 

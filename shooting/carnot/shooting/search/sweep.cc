@@ -8,6 +8,7 @@
 #include <span>
 
 #include "carnot/numerics/parallel.h"
+#include "carnot/shooting/path/path_lagrangian.h"
 #include "carnot/shooting/problem/dilation.h"
 #include "carnot/shooting/problem/manifold.h"
 #include "carnot/shooting/shoot/end_point.h"
@@ -30,6 +31,14 @@ std::vector<double> draw_momentum(const BoundaryValueProblem& problem,
   std::uniform_real_distribution<double> uniform(options.lowest, options.highest);
   std::vector<double> p(n), zero(n, 0.0), velocity(n), lambda(problem.dynamics.multipliers);
   for (int j = 0; j < n; ++j) p[j] = options.momentum_scale[j] * normal(random);
+  if (!(options.highest > 0)) {
+    constexpr double kSmallest = 0.1;  // of the standard deviations
+    constexpr double kLargest = 3;
+    std::uniform_real_distribution<double> magnitude(std::log(kSmallest), std::log(kLargest));
+    const double factor = std::exp(magnitude(random));
+    for (double& x : p) x *= factor;
+    return p;
+  }
   if (!bring_to_manifold(problem, p)) return {};
   const auto energy = [&](const std::vector<double>& at) {
     return problem.dynamics.evaluate(0, problem.from, at, velocity, lambda).hamiltonian;
@@ -56,7 +65,7 @@ class Miss {
  public:
   explicit Miss(const BoundaryValueProblem& problem) : problem_(problem) {
     constexpr double kNear = 0.1;  // gauge
-    dilation_ = Dilation::at_start(problem);
+    if (problem.dynamics.has_transcription()) dilation_ = Dilation::at_start(problem);
     if (!dilation_) return;
     to_ = dilation_->coordinates(problem.to.data());
     const double gauge = dilation_->gauge(to_);
@@ -80,9 +89,16 @@ class Miss {
 };
 
 // Runs all of them at once and sets `miss`: infinite where the flow fails.
-void run(const BoundaryValueProblem& problem, int threads, std::vector<Draw>& draws) {
+void run(const BoundaryValueProblem& problem,
+         const SweepOptions& options,
+         int threads,
+         std::vector<Draw>& draws) {
   constexpr double kTolerance = 1e-4;  // only the order of the misses counts
-  constexpr long kSteps = 16;          // enough to see where a trajectory goes
+  constexpr long kFewSteps = 16;       // enough to see where a trajectory goes
+  // Where there is drift, a quarter of the intervals that follow it are.
+  const long steps = problem.dynamics.has_transcription()
+                         ? kFewSteps
+                         : std::max(kFewSteps, options.intervals / 4L);
   const Dynamics& dynamics = problem.dynamics;
   const int n = dynamics.dof;
   const auto count = static_cast<int>(draws.size());
@@ -94,7 +110,7 @@ void run(const BoundaryValueProblem& problem, int threads, std::vector<Draw>& dr
   }
   (void)(dynamics.has_adaptive_batch()
              ? dynamics.adaptive_batch(0, problem.time, kTolerance, count, z, threads)
-             : dynamics.flow_batch(StepPlan::equal(0, problem.time, kSteps), count, z, threads));
+             : dynamics.flow_batch(StepPlan::equal(0, problem.time, steps), count, z, threads));
   const Miss target(problem);
   for (int i = 0; i < count; ++i) {
     const double miss = target.of(&z[static_cast<std::size_t>(i) * 2 * n]);
@@ -106,7 +122,7 @@ void run(const BoundaryValueProblem& problem, int threads, std::vector<Draw>& dr
 Path pulled(const BoundaryValueProblem& problem, const std::vector<double>& p, int intervals) {
   const Dynamics& dynamics = problem.dynamics;
   const int n = dynamics.dof;
-  const int k = dynamics.transcribed;
+  const int k = PathLagrangian::multipliers(dynamics);
   const Knots knots = knots_of(problem, p, intervals, intervals);
   Path path;
   path.intervals = intervals;
@@ -127,8 +143,12 @@ Path pulled(const BoundaryValueProblem& problem, const std::vector<double>& p, i
   const std::span<const double> z(middle);
   for (int i = 0; i < intervals && k > 0; ++i) {
     for (int j = 0; j < 2 * n; ++j) middle[j] = 0.5 * (knots.at(i)[j] + knots.at(i + 1)[j]);
-    dynamics.midpoint_multipliers(
-        z.first(n), z.subspan(n), std::span(path.lambda).subspan(i * k, k));
+    const std::span<double> lambda = std::span(path.lambda).subspan(i * k, k);
+    if (dynamics.has_transcription()) {
+      dynamics.midpoint_multipliers(z.first(n), z.subspan(n), lambda);
+    } else {
+      std::copy(z.begin() + n, z.end(), lambda.begin());
+    }
   }
   return path;
 }
@@ -141,7 +161,7 @@ std::vector<Path> near_hits(const BoundaryValueProblem& problem,
   std::vector<Draw> draws(options.flows);
   parallel_for(options.flows, threads, [&](int i) { draws[i].p = draw(problem, options, i); });
   std::erase_if(draws, [](const Draw& draw) { return draw.p.empty(); });
-  run(problem, threads, draws);
+  run(problem, options, threads, draws);
   std::stable_sort(
       draws.begin(), draws.end(), [](const Draw& a, const Draw& b) { return a.miss < b.miss; });
   const auto kept = std::min<std::size_t>(options.keep, draws.size());

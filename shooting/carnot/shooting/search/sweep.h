@@ -21,7 +21,9 @@ struct SweepOptions {
   int flows = 500;     // trajectories
   int keep = 40;       // near hits
   int intervals = 64;  // of the paths made
-  double lowest = 0;   // kinetic energy, drawn uniformly between the two
+  // Kinetic energy, drawn uniformly between the two. Where both are zero, momenta keep the size
+  // that they are drawn with.
+  double lowest = 0;
   double highest = 0;
   std::vector<double> momentum_scale;  // n standard deviations, up to a common factor
 };
