@@ -11,6 +11,7 @@
 #include "carnot/shooting/find_geodesics.h"
 #include "catalogue/method_table.h"
 #include "catalogue/scene_choice.h"
+#include "catalogue/text_entry.h"
 #include "run/delivery.h"
 #include "run/geodesic_text.h"
 #include "run/laboratory.h"
@@ -169,15 +170,17 @@ int run_stress(const StressOptions& options, const std::vector<std::string>& arg
   const auto begin = std::chrono::steady_clock::now();
   const SceneEntry& entry = find_scene(options.scene);
   const ParameterValues parameters = parse_parameters(entry, options.set);
-  const Method& method = choose_method(options.method, "rattle6", entry);
+  const bool as_text = is_searched_as_text(entry, options.method);
+  const Method& method = as_text ? *find_method("gauss16") : choose_method(options.method, entry);
   const auto targets =
       static_cast<int>(parse_integer("--targets", options.targets, 1, kMostTargets));
   const std::uint64_t seed = parse_seed("--seed", options.seed);
   const int threads = parse_threads(options.threads);
   check_table_output(options.destination);
-  const Dynamics dynamics = entry.make(parameters, method.name);
-  if (dynamics.forced > 0) {
-    refuse("SCENE", options.scene, "searches by RATTLE take too long", "scenes that need none");
+  const Dynamics dynamics =
+      as_text ? dynamics_of_text(entry, parameters) : entry.make(parameters, method.name);
+  if (dynamics.forced > 0 && !dynamics.on_leaves) {
+    refuse("--method", options.method, "searches by RATTLE take too long", "none, for gauss16");
   }
   ProgressBar bar("targets", targets, options.destination.quiet);
   const std::vector<Trial> trials =

@@ -15,10 +15,8 @@ std::vector<std::string> method_names(const SceneEntry& entry) {
   return names;
 }
 
-const Method& choose_method(std::string_view name,
-                            std::string_view holonomic_default,
-                            const SceneEntry& entry) {
-  if (name.empty()) name = entry.needs_rattle ? holonomic_default : "gauss16";
+const Method& choose_method(std::string_view name, const SceneEntry& entry) {
+  if (name.empty()) name = entry.needs_rattle ? "rattle" : "gauss16";
   const Method* const method = find_method(name);
   if (method != nullptr && entry.suits(*method)) return *method;
   const std::vector<std::string> names = method_names(entry);

@@ -13,10 +13,8 @@ namespace carnot::apps {
 // The names of the methods that can integrate the scene.
 std::vector<std::string> method_names(const SceneEntry& entry);
 
-// `name`, or where it is empty gauss16, or `holonomic_default` where RATTLE is needed. Throws
+// `name`, or where it is empty gauss16, or rattle where that is needed. Throws
 // std::invalid_argument naming the methods that suit the scene.
-const Method& choose_method(std::string_view name,
-                            std::string_view holonomic_default,
-                            const SceneEntry& entry);
+const Method& choose_method(std::string_view name, const SceneEntry& entry);
 
 }  // namespace carnot::apps

@@ -41,4 +41,14 @@ SceneEntry program_text_entry(std::string_view name) {
       scene_from_text(std::string(found->text), std::string(name), std::string(name)));
 }
 
+bool is_searched_as_text(const SceneEntry& entry, std::string_view method) {
+  return entry.needs_rattle && method.empty();
+}
+
+Dynamics dynamics_of_text(const SceneEntry& entry, const ParameterValues& parameters) {
+  Dynamics dynamics = program_text_entry(entry.info.name).make(parameters, "gauss16");
+  dynamics.info = entry.make(parameters, "rattle").info;
+  return dynamics;
+}
+
 }  // namespace carnot::apps

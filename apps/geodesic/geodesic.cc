@@ -140,7 +140,7 @@ void add_search_options(CLI::App& app, GeodesicCall& options) {
 
 void add_geodesic(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<GeodesicCall>();
-  options->run.holonomic_default = "rattle6";  // for the accuracy that verification asks for
+  options->run.searches = true;
   CLI::App& geodesic =
       *app.add_subcommand("geodesic", "Find geodesics between two configurations.");
   add_search_options(geodesic, *options);

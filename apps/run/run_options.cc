@@ -5,6 +5,7 @@
 
 #include "carnot/plots/plot_file.h"
 #include "catalogue/scene_choice.h"
+#include "catalogue/text_entry.h"
 #include "text/numbers.h"
 #include "text/output_file.h"
 #include "text/version.h"
@@ -100,7 +101,8 @@ Run check(const RunOptions& options) {
   Run run;
   run.entry = &find_scene(options.scene);
   run.parameters = parse_parameters(*run.entry, options.set);
-  run.method = choose_method(options.method, options.holonomic_default, *run.entry);
+  const bool as_text = options.searches && is_searched_as_text(*run.entry, options.method);
+  run.method = as_text ? *find_method("gauss16") : choose_method(options.method, *run.entry);
   run.samples = parse_integer("--samples", options.samples, 2, kMostSamples);
   run.seed = parse_seed("--seed", options.seed);
   run.threads = parse_threads(options.threads);
@@ -108,7 +110,8 @@ Run check(const RunOptions& options) {
   run.destination = options.destination;
   run.destination.figure = find_figure(options.destination.figure_name);
   check_destination(run.destination, run.no_trajectory);
-  run.dynamics = run.entry->make(run.parameters, run.method.name);
+  run.dynamics = as_text ? dynamics_of_text(*run.entry, run.parameters)
+                         : run.entry->make(run.parameters, run.method.name);
   const bool drawable = run.dynamics.info.drawing.view != Drawing::View::kTimeOnly;
   const plots::Figure figure = run.destination.figure;
   if (!drawable && (figure == plots::Figure::kPath || figure == plots::Figure::kOverview)) {

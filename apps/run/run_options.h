@@ -29,8 +29,8 @@ struct Destination {
 struct RunOptions {
   std::string scene;
   std::vector<std::string> set;
-  std::string method;                        // empty: the default of the scene,
-  std::string holonomic_default = "rattle";  // which is this one with holonomic constraints
+  std::string method;     // empty: the default of the scene
+  bool searches = false;  // the scene is searched, not only followed
   std::string samples = "201";
   std::string seed = "0";
   std::string threads;  // empty: all cores

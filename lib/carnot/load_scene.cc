@@ -44,6 +44,7 @@ Dynamics TextScene::Impl::bind() const {
   dynamics.calls = system->calls;
   dynamics.holonomic = system->holonomic_count;
   dynamics.forced = system->holonomic_count;
+  dynamics.on_leaves = dynamics.forced > 0;
   if (system->has_transcription) {
     dynamics.transcription = &system->transcription;
     dynamics.transcribed = system->transcribed;

@@ -162,6 +162,8 @@ TEST(HolonomicScenes, GeodesicsAreFound) {
   ASSERT_EQ(outcome.status, 0) << outcome.out << outcome.err;
   const auto best = outcome.json()["geodesics"][0];
   EXPECT_NEAR(best["action"].get<double>(), M_PI * M_PI / 8, 1e-9);
+  EXPECT_EQ(best["label"], "locally-minimal");
+  EXPECT_EQ(outcome.json()["method"], "gauss16");
 }
 
 }  // namespace

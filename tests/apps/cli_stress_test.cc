@@ -81,7 +81,7 @@ TEST(Stress, CountsReasons) {
 TEST(Stress, RefusesBadInput) {
   const std::map<std::vector<std::string>, std::string> cases{
       {{"stress", "unicicle"}, "did you mean unicycle?"},
-      {{"stress", "rod-skate"}, "RATTLE"},
+      {{"stress", "rod-skate", "--method", "rattle"}, "RATTLE"},
       {{"stress", "unicycle", "--targets", "0"}, "--targets '0'"},
       {{"stress", "unicycle", "--seed", "-1"}, "--seed"},
       {{"stress", "unicycle", "--set", "gamma=1"}, "--set"},

@@ -94,7 +94,8 @@ bool passes_singularity(const BoundaryValueProblem& problem, const Extremal& ext
 ConjugateTimes conjugate_times_along(const BoundaryValueProblem& problem,
                                      const Extremal& extremal,
                                      ConjugateTimesOptions options) {
-  if (problem.dynamics.forced > 0 || passes_singularity(problem, extremal)) return {};
+  if (problem.dynamics.forced > 0 && !problem.dynamics.on_leaves) return {};
+  if (passes_singularity(problem, extremal)) return {};
   options.doubt = doubt_of(problem, extremal.geodesic);
   const long steps = extremal.geodesic.plan.count / 2;
   return conjugate_times(problem, extremal.knots, steps, options);
@@ -104,7 +105,7 @@ ConjugateTimes conjugate_times_along(const BoundaryValueProblem& problem,
 void set_label(const BoundaryValueProblem& problem,
                const ConjugateTimes& conjugate,
                Geodesic& geodesic) {
-  if (conjugate.corank) geodesic.abnormal = *conjugate.corank > 0;
+  if (conjugate.corank) geodesic.abnormal = *conjugate.corank > problem.dynamics.forced;
   if (!conjugate.known) return;
   const auto inner = static_cast<int>(conjugate.times.size()) - conjugate.at_end;
   geodesic.morse_index = inner;

@@ -113,6 +113,7 @@ bool Reduction::evaluate(State& state, bool second) {
         terms_.set(l, (i + l + 0.5) * h_, middle.data(), &state.path.lambda[(i + l) * n_]);
       }
       state.exists = terms_.evaluate(count, order, i / HamiltonianTerms::kPoints);
+      if (i == 0) terms_.fix_gauge(0, state.path.configuration(0));
     }
     const double* left = state.path.configuration(i);
     const double* right = state.path.configuration(i + 1);

@@ -39,6 +39,7 @@ int PathLagrangian::load(const Path& path, int first, HamiltonianTerms::Order or
     terms_->set(point, t, middle_.data(), &path.lambda[(first + point) * k_]);
   }
   terms_->evaluate(count, order, first / HamiltonianTerms::kPoints);
+  if (first == 0) terms_->fix_gauge(0, path.configuration(0));
   return count;
 }
 

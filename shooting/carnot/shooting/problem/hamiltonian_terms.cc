@@ -57,6 +57,31 @@ bool HamiltonianTerms::evaluate(int count, Order order, int group) {
   return good;
 }
 
+void HamiltonianTerms::fix_gauge(int point, const double* q) {
+  if (dynamics_.forced == 0) return;
+  const int size = 2 * n_;
+  if (normal_.empty()) {
+    std::vector<double> z(size, 0.0);
+    std::vector<double> projector(static_cast<std::size_t>(size) * size);
+    std::copy(q, q + n_, z.begin());
+    if (!dynamics_.tangent_projector(0, z, projector)) return;
+    normal_.resize(n_ * n_);
+    for (int i = 0; i < n_; ++i) {
+      for (int j = 0; j < n_; ++j) normal_[i * n_ + j] = (i == j) - projector[i * size + j];
+    }
+  }
+  constexpr double kGauge = 1;
+  for (int i = 0; i < n_; ++i) {
+    for (int j = 0; j < n_; ++j) {
+      const double entry = kGauge * normal_[i * n_ + j];
+      const double p = z_[(n_ + j) * kPoints + point];
+      by_p_[i * kPoints + point] += entry * p;
+      value_[point] += 0.5 * entry * p * z_[(n_ + i) * kPoints + point];
+      pp_[(i * n_ + j) * kPoints + point] += entry;
+    }
+  }
+}
+
 bool HamiltonianTerms::set_rates(std::vector<double>& y) {
   const SystemFunctions& functions = *dynamics_.functions;
   const void* const system = dynamics_.system.get();

@@ -36,6 +36,12 @@ class HamiltonianTerms {
   // the points of the same `group`.
   bool evaluate(int count, Order order, int group = 0);
 
+  // Where holonomic constraints are kept as Dh q' = 0, momenta along Dh move nothing, and a path from
+  // one point of the manifold to another need not be told at every interval to stay on it. So at one
+  // point c |N'p|^2 / 2 is added, with the normal directions N at q; it makes the equations regular and
+  // vanishes at their solution.
+  void fix_gauge(int point, const double* q);
+
   // H itself.
   [[nodiscard]] double value(int point) const { return value_[point]; }
   [[nodiscard]] double by_q(int point, int i) const { return by_q_[i * kPoints + point]; }
@@ -71,6 +77,7 @@ class HamiltonianTerms {
   std::vector<double> qq_;
   std::vector<double> qp_;
   std::vector<double> pp_;
+  std::vector<double> normal_;  // N N', n x n
 };
 
 }  // namespace carnot::internal

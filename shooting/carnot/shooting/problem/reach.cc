@@ -5,6 +5,7 @@
 
 #include "carnot/shooting/linear/dense.h"
 #include "carnot/shooting/problem/hamiltonian_terms.h"
+#include "carnot/shooting/problem/manifold.h"
 
 namespace carnot::internal {
 namespace {
@@ -27,6 +28,26 @@ double spectral_radius(const MatrixXd& a) {
     log_radius += std::log(size) / exponent;
   }
   return std::exp(log_radius);
+}
+
+// The mean of diag(H_pp) along the straight line, brought to the manifold: what the start cannot move
+// for the constraints, other points can.
+std::vector<double> sizes_on_manifold(const BoundaryValueProblem& problem,
+                                      const std::vector<double>& rest) {
+  constexpr int kSamples = 16;
+  const int n = problem.dynamics.dof;
+  HamiltonianTerms terms(problem.dynamics);
+  std::vector<double> sizes(n, 0.0);
+  std::vector<double> q(n);
+  for (int i = 0; i < kSamples; ++i) {
+    const double s = (i + 0.5) / kSamples;
+    for (int j = 0; j < n; ++j) q[j] = (1 - s) * problem.from[j] + s * problem.to[j];
+    if (!bring_to_manifold(problem.dynamics, q.data())) continue;
+    terms.set(0, s * problem.time, q.data(), rest.data());
+    if (!terms.evaluate(1, HamiltonianTerms::Order::kSecond)) continue;
+    for (int j = 0; j < n; ++j) sizes[j] += terms.pp(0, j, j) / kSamples;
+  }
+  return sizes;
 }
 
 }  // namespace
@@ -92,6 +113,7 @@ Reach reach_of(const BoundaryValueProblem& problem) {
     for (int j = 0; j < n; ++j) q[j] += 0.5 * h * (rate[j] + terms.by_p(0, j));
   }
   if (followed > 0) reach.turns *= problem.time / followed;
+  if (problem.dynamics.forced > 0) reach.sizes = sizes_on_manifold(problem, rest);
   // A coordinate that controls do not reach so soon.
   const double largest = *std::max_element(reach.sizes.begin(), reach.sizes.end());
   for (double& size : reach.sizes) size = std::max(size, 1e-6 * (largest > 0 ? largest : 1));

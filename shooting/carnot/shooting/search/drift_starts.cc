@@ -11,6 +11,7 @@
 #include "carnot/shooting/path/drift.h"
 #include "carnot/shooting/path/homotopy.h"
 #include "carnot/shooting/problem/hamiltonian_terms.h"
+#include "carnot/shooting/problem/manifold.h"
 
 namespace carnot::internal {
 namespace {
@@ -25,6 +26,16 @@ Path path_of(int dof, int intervals) {
   path.dof = dof;
   path.q.assign(static_cast<std::size_t>(intervals + 1) * dof, 0.0);
   return path;
+}
+
+// Inner nodes that have no nearest point there stay where they are.
+void bring_nodes_to_manifold(const Dynamics& dynamics, Path& path) {
+  for (int i = 1; i < path.intervals && dynamics.forced > 0; ++i) {
+    std::vector<double> q(path.configuration(i), path.configuration(i) + path.dof);
+    if (bring_to_manifold(dynamics, q.data())) {
+      std::copy(q.begin(), q.end(), path.configuration(i));
+    }
+  }
 }
 
 // Random numbers of one start.
@@ -199,15 +210,21 @@ Path DriftStarts::random_path(int i, int intervals, double& relaxation) const {
   // of a quadrotor: over five decades of mu each of them has a range in which nearly all starts
   // converge.
   constexpr double kLeastRelaxed = 1e-3;
+  // On manifolds (skate-on-sphere, rod-skate) nearly all starts converge from here on, and few below.
+  constexpr double kLeastOnManifold = 0.3;
   constexpr double kMostRelaxed = 1e2;
   constexpr double kLeastWiggle = 0.02;
   constexpr double kMostWiggle = 1;
   const int n = problem_.dynamics.dof;
   Draws draws(seed_, i);
-  relaxation = draws.log_uniform(kLeastRelaxed, kMostRelaxed);
+  const double least = problem_.dynamics.forced > 0 ? kLeastOnManifold : kLeastRelaxed;
+  relaxation = draws.log_uniform(least, kMostRelaxed);
   Path path =
       i % 4 >= 2 ? blended_drift(problem_, intervals, draws) : straight(problem_, intervals);
-  if (i == 0) return path;
+  if (i == 0) {
+    bring_nodes_to_manifold(problem_.dynamics, path);
+    return path;
+  }
   const double size =
       draws.log_uniform(kLeastWiggle, kMostWiggle) * std::sqrt(2 * action_ * problem_.time);
   for (int m = 1; m <= kWiggles; ++m) {
@@ -219,6 +236,7 @@ Path DriftStarts::random_path(int i, int intervals, double& relaxation) const {
       }
     }
   }
+  bring_nodes_to_manifold(problem_.dynamics, path);
   return path;
 }
 

@@ -1,0 +1,83 @@
+// Geodesics on manifolds of scenes from text, with labels, against closed forms and RATTLE.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "carnot/load_scene.h"
+#include "carnot/shooting/find_geodesics.h"
+#include "carnot/shooting/search/drift_starts.h"
+#include "catalogue/scene_choice.h"
+
+namespace carnot::holonomic_search_test {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+TextScene text(const std::string& name) {
+  return load_scene(CARNOT_SOURCE_DIR "/lib/carnot/scenes/" + name + ".scene");
+}
+
+TEST(HolonomicSearch, GreatCirclesAreConjugateAtTheAntipode) {
+  const Dynamics sphere = make_dynamics(text("spherical-pendulum").with({{"gravity", 0}}));
+  constexpr double kAngle = 2;
+  GeodesicOptions options;
+  options.count = 2;
+  const GeodesicReport report =
+      find_geodesics({sphere, {1, 0, 0}, {std::cos(kAngle), std::sin(kAngle), 0}}, options);
+  ASSERT_EQ(report.geodesics.size(), 2U) << report.message;
+  const Geodesic& shorter = report.geodesics[0];
+  const Geodesic& longer = report.geodesics[1];
+  constexpr double kVerified = 1e-10;
+  EXPECT_NEAR(shorter.length.value(), kAngle, kVerified);
+  EXPECT_EQ(shorter.label, Label::kLocallyMinimal);
+  EXPECT_EQ(shorter.abnormal, false);
+  EXPECT_NEAR(longer.length.value(), 2 * kPi - kAngle, kVerified);
+  EXPECT_EQ(longer.label, Label::kConjugatePassed);
+  ASSERT_EQ(longer.conjugate_times.value().size(), 1U);
+  constexpr double kTime = 1e-6;  // to which conjugate times are found
+  EXPECT_NEAR(longer.conjugate_times->front(), kPi / (2 * kPi - kAngle), kTime);
+  // p is that of RATTLE: tangent to the sphere.
+  EXPECT_NEAR(shorter.p0[0], 0, kVerified);
+  EXPECT_NEAR(shorter.p0[1], kAngle, kVerified);
+}
+
+TEST(HolonomicSearch, AgreesWithRattle) {
+  const std::vector<double> from{0, 0, 1, 0};
+  const std::vector<double> to{0.5, 1, 0.5, 2};
+  const GeodesicReport found = find_geodesics({make_dynamics(text("rod-skate")), from, to});
+  const Dynamics rattle = apps::find_scene("rod-skate").make({}, "rattle6");
+  GeodesicOptions options;
+  ASSERT_FALSE(found.geodesics.empty());
+  options.guess = found.geodesics[0].p0;
+  const GeodesicReport known = find_geodesics({rattle, from, to}, options);
+  ASSERT_FALSE(known.geodesics.empty()) << known.message;
+  constexpr double kVerified = 1e-9;
+  EXPECT_NEAR(found.geodesics[0].action, known.geodesics[0].action, kVerified);
+  for (int j = 0; j < 4; ++j) {
+    EXPECT_NEAR(found.geodesics[0].p0[j], known.geodesics[0].p0[j], kVerified) << j;
+  }
+  EXPECT_EQ(found.geodesics[0].label, Label::kLocallyMinimal);
+}
+
+TEST(HolonomicSearch, DiscreteExtremalsStayOnTheManifold) {
+  // h is of second order, so Dh (q_i + q_{i+1}) / 2 times the step is its change.
+  const BoundaryValueProblem problem{
+      make_dynamics(text("spherical-pendulum")), {0, 0, -1}, {0.6, 0, -0.8}};
+  const internal::DriftStarts starts(problem, 0);
+  int found = 0;
+  for (int i = 0; i < 8; ++i) {
+    const internal::RelaxedStart start = starts.start(i, 32);
+    if (!start.found) continue;
+    ++found;
+    for (int node = 0; node <= 32; ++node) {
+      const double* q = start.path.configuration(node);
+      EXPECT_NEAR(q[0] * q[0] + q[1] * q[1] + q[2] * q[2], 1, 1e-9);
+    }
+  }
+  EXPECT_GE(found, 4);
+}
+
+}  // namespace
+}  // namespace carnot::holonomic_search_test
