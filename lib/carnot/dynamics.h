@@ -39,10 +39,11 @@ struct HolonomicResiduals {
 struct Dynamics {
   int dof = 0;
   int multipliers = 0;
-  int transcribed = 0;     // constraints of the midpoint transcription; k for velocity constraints
-  int holonomic = 0;       // number of constraints h(q) = 0,
-  int forced = 0;          // and of those kept by forces: momenta along their Dh move nothing
-  // Whether the forced constraints are kept as Dh q' = 0: then the flow exists beside the manifold, too.
+  int transcribed = 0;  // constraints of the midpoint transcription; k for velocity constraints
+  int holonomic = 0;    // number of constraints h(q) = 0,
+  int forced = 0;       // and of those kept by forces: momenta along their Dh move nothing
+  // Whether the forced constraints are kept as Dh q' = 0: then the flow exists beside the manifold,
+  // too.
   bool on_leaves = false;
   bool autonomous = true;  // H does not depend on time
   std::string method;

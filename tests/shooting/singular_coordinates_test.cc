@@ -45,6 +45,15 @@ TEST(SingularCoordinates, WhereTheStraightLinePassesAPathMay) {
   }
 }
 
+// The bicycle has a path of action 15.1 to here, on the way to shorter ones beyond delta = pi/2.
+TEST(SingularCoordinates, AnAnswerSaysWhereTheyStoodInTheWayOfOthers) {
+  const GeodesicReport report = find_geodesics(sideways());
+  ASSERT_FALSE(report.geodesics.empty()) << report.message;
+  EXPECT_THAT(report.message, HasSubstr("ran into a singularity of the coordinates"));
+  EXPECT_EQ(report.reason, Reason::kNone);
+  EXPECT_EQ(find_geodesics(test::sideways()).message, "");
+}
+
 TEST(SingularCoordinates, EndsThatTheyPartAreToldOnFailure) {
   const GeodesicReport report = find_geodesics(test::satellite({0.3, 2, 0.1}));
   EXPECT_TRUE(report.geodesics.empty());

@@ -64,6 +64,7 @@ struct Found {
   std::vector<int> hits;
   int starts = 0;
   int converged = 0;
+  int blocked = 0;
   bool finished = true;
   bool counted = true;  // hits tell how many were missed
   Failure failure;      // why there is none, of the first image
@@ -92,6 +93,7 @@ void search_image(const GeodesicOptions& options, Found& found) {
   found.counted = found.counted && search.counts();
   found.starts += search.starts();
   found.converged += search.converged();
+  found.blocked += search.blocked();
   if (found.list.empty() && found.failure.reason == Reason::kNone) {
     found.failure = explain_failure(problem, search, options);
   }
@@ -153,6 +155,7 @@ GeodesicReport find_geodesics(const BoundaryValueProblem& asked, const GeodesicO
   report.distinct_hit = static_cast<int>(found.hits.size());
   if (found.counted) report.missed_estimate = missed_estimate(found.hits);
   report.status = list.empty() ? GeodesicStatus::kNotConverged : GeodesicStatus::kConverged;
+  if (found.blocked > 0) report.message = blocked_starts(found.blocked, found.starts);
   if (list.empty()) {
     report.reason = found.failure.reason;
     report.message = found.failure.message;

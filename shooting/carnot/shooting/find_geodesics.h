@@ -48,7 +48,8 @@ enum class GeodesicStatus { kConverged, kNotConverged, kInterrupted };
 struct GeodesicReport {
   GeodesicStatus status = GeodesicStatus::kNotConverged;
   // Why nothing was found, as a code and in words with what to try. With mod_angles they are those
-  // of the first image of the target.
+  // of the first image of the target. Where there are geodesics the words say whether coordinates
+  // stood in the way of others; empty where they did not.
   Reason reason = Reason::kNone;
   std::string message;
   std::vector<Geodesic> geodesics;

@@ -36,10 +36,10 @@ class HamiltonianTerms {
   // the points of the same `group`.
   bool evaluate(int count, Order order, int group = 0);
 
-  // Where holonomic constraints are kept as Dh q' = 0, momenta along Dh move nothing, and a path from
-  // one point of the manifold to another need not be told at every interval to stay on it. So at one
-  // point c |N'p|^2 / 2 is added, with the normal directions N at q; it makes the equations regular and
-  // vanishes at their solution.
+  // Where holonomic constraints are kept as Dh q' = 0, momenta along Dh move nothing, and a path
+  // from one point of the manifold to another need not be told at every interval to stay on it. So
+  // at one point c |N'p|^2 / 2 is added, with the normal directions N at q; it makes the equations
+  // regular and vanishes at their solution.
   void fix_gauge(int point, const double* q);
 
   // H itself.

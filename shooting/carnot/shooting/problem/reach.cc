@@ -30,8 +30,8 @@ double spectral_radius(const MatrixXd& a) {
   return std::exp(log_radius);
 }
 
-// The mean of diag(H_pp) along the straight line, brought to the manifold: what the start cannot move
-// for the constraints, other points can.
+// The mean of diag(H_pp) along the straight line, brought to the manifold: what the start cannot
+// move for the constraints, other points can.
 std::vector<double> sizes_on_manifold(const BoundaryValueProblem& problem,
                                       const std::vector<double>& rest) {
   constexpr int kSamples = 16;

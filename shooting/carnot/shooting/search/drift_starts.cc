@@ -210,7 +210,8 @@ Path DriftStarts::random_path(int i, int intervals, double& relaxation) const {
   // of a quadrotor: over five decades of mu each of them has a range in which nearly all starts
   // converge.
   constexpr double kLeastRelaxed = 1e-3;
-  // On manifolds (skate-on-sphere, rod-skate) nearly all starts converge from here on, and few below.
+  // On manifolds (skate-on-sphere, rod-skate) nearly all starts converge from here on, and few
+  // below.
   constexpr double kLeastOnManifold = 0.3;
   constexpr double kMostRelaxed = 1e2;
   constexpr double kLeastWiggle = 0.02;

@@ -119,6 +119,13 @@ Failure no_discrete(const BoundaryValueProblem& problem, const Search& search) {
 
 }  // namespace
 
+std::string blocked_starts(int blocked, int starts) {
+  return std::to_string(blocked) + " of " + std::to_string(starts) +
+         " starts ran into a singularity of the coordinates: there may be less action beyond it, "
+         "in "
+         "other coordinates";
+}
+
 Failure explain_failure(const BoundaryValueProblem& problem,
                         const Search& search,
                         const GeodesicOptions& options) {

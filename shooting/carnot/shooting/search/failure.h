@@ -21,4 +21,7 @@ Failure explain_failure(const BoundaryValueProblem& problem,
                         const Search& search,
                         const GeodesicOptions& options);
 
+// What there is to say where starts ran into a singularity of the coordinates and others did not.
+std::string blocked_starts(int blocked, int starts);
+
 }  // namespace carnot::internal

@@ -29,7 +29,8 @@ Search::Search(const BoundaryValueProblem& problem, const GeodesicOptions& optio
       options_(options),
       threads_(thread_count(options.threads)),
       near_(NearTarget::of(problem)),
-      policy_(options, problem.dynamics.forced == 0 || problem.dynamics.on_leaves, near_.has_value()),
+      policy_(
+          options, problem.dynamics.forced == 0 || problem.dynamics.on_leaves, near_.has_value()),
       extremals_(partners_for(problem, options, policy_)),
       discrete_(problem) {
   if (problem.dynamics.has_transcription()) return;
