@@ -47,11 +47,7 @@ Json report_json(const GeodesicRequest& request,
   json["starts"] = report.starts;
   json["converged_starts"] = report.converged_starts;
   json["distinct_hit"] = report.distinct_hit;
-  if (report.missed_estimate) {
-    json["missed_estimate"] = *report.missed_estimate;
-  } else {
-    json["missed_estimate"] = nullptr;
-  }
+  json["missed_estimate"] = or_null(report.missed_estimate);
   json["elapsed_seconds"] = report.elapsed_seconds;
   return json;
 }

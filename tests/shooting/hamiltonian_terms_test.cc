@@ -19,6 +19,9 @@ using Order = HamiltonianTerms::Order;
 // nonlinear constraints, a structure matrix, and velocity constraints.
 class Kinds : public ::testing::TestWithParam<std::string> {};
 
+Dynamics of_text(const std::string& name) {
+  return make_dynamics(load_scene(CARNOT_SOURCE_DIR "/lib/carnot/scenes/" + name + ".scene"));
+}
 Dynamics of(const std::string& name) { return apps::find_scene(name).make({}, "gauss16"); }
 
 TEST_P(Kinds, DerivativesAreThoseOfH) {
@@ -89,6 +92,26 @@ TEST(HamiltonianTerms, ScalesTheDriftAndNothingElse) {
   EXPECT_NEAR(scaled.by_p(0, 1), -kDrift * std::sin(q[0]) + p[1], kRoundOff);
   EXPECT_NEAR(scaled.pp(0, 1, 1), 1, kRoundOff);
   EXPECT_NEAR(scaled.qq(0, 0, 0), kDrift * p[1] * std::sin(q[0]), kRoundOff);
+}
+
+// |N'p|^2 / 2 with the normal N of the sphere, whatever the drift.
+TEST(HamiltonianTerms, FixesTheGaugeOfMomenta) {
+  const Dynamics sphere = of_text("spherical-pendulum");
+  const std::vector<double> q{0, 0, -1};
+  const std::vector<double> p{0.3, -0.2, 0.7};
+  for (const double drift : {1.0, 0.4}) {
+    HamiltonianTerms terms(sphere, drift);
+    terms.set(0, 0, q.data(), p.data());
+    ASSERT_TRUE(terms.evaluate(1, Order::kSecond));
+    const double value = terms.value(0);
+    const double along = terms.by_p(0, 2);
+    const double second = terms.pp(0, 2, 2);
+    terms.fix_gauge(0, q.data());
+    constexpr double kRoundOff = 1e-14;
+    EXPECT_NEAR(terms.value(0) - value, 0.5 * p[2] * p[2], kRoundOff);
+    EXPECT_NEAR(terms.by_p(0, 2) - along, p[2], kRoundOff);
+    EXPECT_NEAR(terms.pp(0, 2, 2) - second, 1, kRoundOff);
+  }
 }
 
 TEST(HamiltonianTerms, SaysWhereHDoesNotExist) {

@@ -8,6 +8,7 @@
 
 #include "carnot/shooting/linear/banded_ldlt.h"
 #include "carnot/shooting/linear/dense.h"
+#include "carnot/shooting/path/path_lagrangian.h"
 #include "carnot/shooting/problem/hamiltonian_terms.h"
 
 namespace carnot::internal {
@@ -101,20 +102,10 @@ bool Reduction::evaluate(State& state, bool second) {
   state.by_q.resize(intervals_ * n_);
   state.action = 0;
   state.exists = true;
-  std::vector<double> middle(n_);
   const auto order = second ? HamiltonianTerms::Order::kSecond : HamiltonianTerms::Order::kFirst;
   for (int i = 0; i < intervals_ && state.exists; ++i) {
     const int point = i % HamiltonianTerms::kPoints;
-    if (point == 0) {
-      const int count = std::min(HamiltonianTerms::kPoints, intervals_ - i);
-      for (int l = 0; l < count; ++l) {
-        const double* left = state.path.configuration(i + l);
-        for (int j = 0; j < n_; ++j) middle[j] = 0.5 * (left[j] + left[n_ + j]);
-        terms_.set(l, (i + l + 0.5) * h_, middle.data(), &state.path.lambda[(i + l) * n_]);
-      }
-      state.exists = terms_.evaluate(count, order, i / HamiltonianTerms::kPoints);
-      if (i == 0) terms_.fix_gauge(0, state.path.configuration(0));
-    }
+    if (point == 0) state.exists = evaluate_middles(state.path, h_, i, order, terms_);
     const double* left = state.path.configuration(i);
     const double* right = state.path.configuration(i + 1);
     const double* s = &state.path.lambda[i * n_];

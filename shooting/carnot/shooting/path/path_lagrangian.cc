@@ -5,6 +5,23 @@
 
 namespace carnot::internal {
 
+bool evaluate_middles(
+    const Path& path, double h, int first, HamiltonianTerms::Order order, HamiltonianTerms& terms) {
+  const int n = path.dof;
+  const int count = std::min(HamiltonianTerms::kPoints, path.intervals - first);
+  std::vector<double> middle(n);
+  for (int point = 0; point < count; ++point) {
+    const int i = first + point;
+    const double* left = path.configuration(i);
+    const double* right = path.configuration(i + 1);
+    for (int j = 0; j < n; ++j) middle[j] = 0.5 * (left[j] + right[j]);
+    terms.set(point, (i + 0.5) * h, middle.data(), &path.lambda[i * n]);
+  }
+  const bool good = terms.evaluate(count, order, first / HamiltonianTerms::kPoints);
+  if (first == 0) terms.fix_gauge(0, path.configuration(0));
+  return good;
+}
+
 PathLagrangian::PathLagrangian(const Dynamics& dynamics, double h, double drift)
     : dynamics_(dynamics),
       h_(h),
@@ -31,16 +48,8 @@ void PathLagrangian::set_middle(const Path& path, int i) {
   }
 }
 
-int PathLagrangian::load(const Path& path, int first, HamiltonianTerms::Order order) {
-  const int count = std::min(HamiltonianTerms::kPoints, path.intervals - first);
-  for (int point = 0; point < count; ++point) {
-    set_middle(path, first + point);
-    const double t = (first + point + 0.5) * h_;
-    terms_->set(point, t, middle_.data(), &path.lambda[(first + point) * k_]);
-  }
-  terms_->evaluate(count, order, first / HamiltonianTerms::kPoints);
-  if (first == 0) terms_->fix_gauge(0, path.configuration(0));
-  return count;
+int PathLagrangian::together(const Path& path, int first) const {
+  return terms_ ? std::min(HamiltonianTerms::kPoints, path.intervals - first) : 1;
 }
 
 void PathLagrangian::visit(const Path& path,
@@ -49,7 +58,8 @@ void PathLagrangian::visit(const Path& path,
   const std::span<double> hessian = second ? hessian_ : std::span<double>();
   const auto order = second ? HamiltonianTerms::Order::kSecond : HamiltonianTerms::Order::kFirst;
   for (int first = 0; first < path.intervals;) {
-    const int count = terms_ ? load(path, first, order) : 1;
+    if (terms_) evaluate_middles(path, h_, first, order, *terms_);
+    const int count = together(path, first);
     for (int point = 0; point < count; ++point) {
       const int i = first + point;
       path.gather(i, k_, x_.data());
@@ -96,7 +106,8 @@ void PathLagrangian::set_hessian(int point) {
 double PathLagrangian::action(const Path& path) {
   double action = 0;
   for (int first = 0; terms_ && first < path.intervals;) {
-    const int count = load(path, first, HamiltonianTerms::Order::kFirst);
+    evaluate_middles(path, h_, first, HamiltonianTerms::Order::kFirst, *terms_);
+    const int count = together(path, first);
     for (int point = 0; point < count; ++point) {
       double lagrangian = -terms_->value(point);
       for (int j = 0; j < n_; ++j) {

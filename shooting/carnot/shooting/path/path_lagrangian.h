@@ -21,6 +21,11 @@
 
 namespace carnot::internal {
 
+// Evaluates `terms` at the middles of the next intervals of length h from `first` on, as many as it
+// takes, with the momenta path.lambda. False where H cannot be evaluated at one of them.
+bool evaluate_middles(
+    const Path& path, double h, int first, HamiltonianTerms::Order order, HamiltonianTerms& terms);
+
 class PathLagrangian {
  public:
   // The terms of one interval: F_d by x = (q0, q1, lambda).
@@ -47,8 +52,8 @@ class PathLagrangian {
  private:
   // Sets middle_ and velocity_.
   void set_middle(const Path& path, int i);
-  // Evaluates terms_ at the middles of the intervals from `first` on. Returns how many there are.
-  int load(const Path& path, int first, HamiltonianTerms::Order order);
+  // How many intervals are evaluated at once from `first` on.
+  [[nodiscard]] int together(const Path& path, int first) const;
   void set_gradient(int point, const double* p);
   void set_hessian(int point);
 

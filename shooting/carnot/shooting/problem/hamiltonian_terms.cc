@@ -50,8 +50,12 @@ bool HamiltonianTerms::evaluate(int count, Order order, int group) {
   fill(0);
   bool good = add(count, 1, 0.5 * (1 + drift_), order, y_[2 * group]);
   if (drift_ != 1 && good) {
-    for (int k = n_ * kPoints; k < 2 * n_ * kPoints; ++k) z_[k] = -z_[k];
+    const auto reverse = [&] {
+      for (int k = n_ * kPoints; k < 2 * n_ * kPoints; ++k) z_[k] = -z_[k];
+    };
+    reverse();
     good = add(count, -1, 0.5 * (1 - drift_), order, y_[2 * group + 1]);
+    reverse();
   }
   if (!good) fill(std::numeric_limits<double>::quiet_NaN());
   return good;
@@ -70,10 +74,9 @@ void HamiltonianTerms::fix_gauge(int point, const double* q) {
       for (int j = 0; j < n_; ++j) normal_[i * n_ + j] = (i == j) - projector[i * size + j];
     }
   }
-  constexpr double kGauge = 1;
   for (int i = 0; i < n_; ++i) {
     for (int j = 0; j < n_; ++j) {
-      const double entry = kGauge * normal_[i * n_ + j];
+      const double entry = normal_[i * n_ + j];
       const double p = z_[(n_ + j) * kPoints + point];
       by_p_[i * kPoints + point] += entry * p;
       value_[point] += 0.5 * entry * p * z_[(n_ + i) * kPoints + point];

@@ -38,7 +38,7 @@ class HamiltonianTerms {
 
   // Where holonomic constraints are kept as Dh q' = 0, momenta along Dh move nothing, and a path
   // from one point of the manifold to another need not be told at every interval to stay on it. So
-  // at one point c |N'p|^2 / 2 is added, with the normal directions N at q; it makes the equations
+  // at one point |N'p|^2 / 2 is added, with the normal directions N at q; it makes the equations
   // regular and vanishes at their solution.
   void fix_gauge(int point, const double* q);
 

@@ -141,6 +141,7 @@ void DriftStarts::scan_scales() {
   const int steps = static_cast<int>(std::ceil(kFastest * intervals_));
   const double h = problem_.time / intervals_;
   const auto nodes = drift_nodes(problem_.dynamics, 1, problem_.from, 0, h, steps);
+  if (nodes.size() < 2 || nodes[1] == nodes[0]) return;  // an equilibrium
   std::vector<double> miss;
   for (const auto& q : nodes) {
     double sum = 0;
@@ -158,9 +159,7 @@ void DriftStarts::scan_scales() {
     if (below_left && below_right) found.emplace_back(miss[i], static_cast<double>(i) / intervals_);
   }
   std::sort(found.begin(), found.end());
-  for (const auto& [distance, d] : found) {
-    if (nodes.front() != nodes.back()) scales_.push_back(d);
-  }
+  for (const auto& [distance, d] : found) scales_.push_back(d);
 }
 
 int DriftStarts::actuated() const {
@@ -222,13 +221,9 @@ Path DriftStarts::random_path(int i, int intervals, double& relaxation) const {
   relaxation = draws.log_uniform(least, kMostRelaxed);
   Path path =
       i % 4 >= 2 ? blended_drift(problem_, intervals, draws) : straight(problem_, intervals);
-  if (i == 0) {
-    bring_nodes_to_manifold(problem_.dynamics, path);
-    return path;
-  }
   const double size =
       draws.log_uniform(kLeastWiggle, kMostWiggle) * std::sqrt(2 * action_ * problem_.time);
-  for (int m = 1; m <= kWiggles; ++m) {
+  for (int m = 1; m <= kWiggles && i > 0; ++m) {  // the first is the straight line itself
     for (int j = 0; j < n; ++j) {
       const double amplitude = size * std::sqrt(reach_.sizes[j]) * draws.normal() / m;
       for (int node = 1; node < intervals; ++node) {
@@ -260,11 +255,11 @@ RelaxedStart DriftStarts::actuated_start(int i, int intervals) const {
   options.max_iterations = 60;
   options.tolerance = 1e-6;
   const ActionDescent reduced = reduce_action(problem_, options, result.path);
-  result.blocked = reduced.left_chart;
   // Where no shift makes a minimum, Newton's method may find what is stationary.
   if (!reduced.converged) result.path = std::move(relaxed);
   const DiscreteNewton tightened = tighten(problem_, {}, result.path);
-  result.blocked = tightened.left_chart || skims_chart_end(problem_.dynamics, result.path);
+  result.blocked = tightened.left_chart || skims_chart_end(problem_.dynamics, result.path) ||
+                   (!tightened.converged && reduced.left_chart);
   result.found = tightened.converged && !result.blocked;
   result.residual = relative_residual(tightened, result.path);
   return result;

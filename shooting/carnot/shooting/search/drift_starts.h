@@ -9,7 +9,7 @@
 //                  together, by Newton's method on the grid.
 //   actuated       A random path: the straight line, or drift from the start blended with drift to
 //                  the target, with wiggles. Fictitious controls on all coordinates make any path
-//                  admissible (action_descent.h). They are made dearer, then taken away.
+//                  admissible (action_descent.h). The method of multipliers takes them back.
 //
 // The scaled drift degenerates where the start is an equilibrium, and random paths seldom wind the
 // right number of times.
