@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "carnot/plots/script.h"
-#include "catalogue/holonomic_check.h"
 #include "catalogue/scene_choice.h"
 #include "text/numbers.h"
 #include "text/text_table.h"
@@ -46,12 +45,13 @@ Along parse_along(const std::string& text, const Run& run, const Ends& ends) {
   const std::string option = "--along " + along.name;
   if (along.name == "to" || along.name == "from") {
     along.kind = along.name == "to" ? Along::Kind::kTarget : Along::Kind::kStart;
-    along.start = along.name == "to" ? ends.to : ends.from;
-    along.end = parse_vector(option, value, coordinate_names(*run.entry));
+    const bool target = along.kind == Along::Kind::kTarget;
+    along.start = target ? ends.to : ends.from;
+    along.end =
+        parse_same_end(option, value, run, along.start, target ? ends.free_to : ends.free_from);
     if (run.dynamics.holonomic > 0) {
       refuse(option, value, "the way there leaves the holonomic constraints", "another --along");
     }
-    check_end(option, value, run.dynamics, along.end);
   } else if (along.name == "time") {
     along.kind = Along::Kind::kTime;
     along.start = {ends.time};
@@ -68,7 +68,7 @@ Along parse_along(const std::string& text, const Run& run, const Ends& ends) {
 }
 
 ProblemLine line_of(const Along& along, const Run& run, const Ends& ends) {
-  const BoundaryValueProblem problem(run.dynamics, ends.from, ends.to, ends.time);
+  const BoundaryValueProblem problem = problem_between(run.dynamics, ends);
   switch (along.kind) {
     case Along::Kind::kTarget:
       return moving_target(problem, along.end);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "carnot/shooting/problem/problem_line.h"
+#include "run/ends.h"
 #include "run/run_options.h"
 
 namespace carnot::apps {
@@ -17,13 +18,6 @@ struct Along {
   std::vector<double> end;
 
   [[nodiscard]] std::vector<double> value(double s) const;
-};
-
-// The ends and the time that a continuation starts with.
-struct Ends {
-  std::vector<double> from;
-  std::vector<double> to;
-  double time = 1;
 };
 
 // Throws std::invalid_argument naming what is accepted.

@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "carnot/shooting/find_geodesics.h"
-#include "catalogue/holonomic_check.h"
 #include "catalogue/scene_choice.h"
 #include "continue/continue_result.h"
 #include "run/subcommands.h"
@@ -54,8 +53,6 @@ ContinueRequest check(const ContinueCall& options) {
   request.run = check(options.run);
   const SceneEntry& entry = *request.run.entry;
   const auto names = coordinate_names(entry);
-  if (options.from.empty()) refuse_missing("--from", vector_accepted(names));
-  if (options.to.empty()) refuse_missing("--to", vector_accepted(names));
   if (options.along.empty()) refuse_missing("--along", "to=Q1, from=Q0, time=T or PARAMETER=VALUE");
   if (request.run.dynamics.forced > 0) {
     refuse("SCENE",
@@ -63,11 +60,7 @@ ContinueRequest check(const ContinueCall& options) {
            "continuation is not offered with holonomic constraints that need RATTLE",
            "a scene without them");
   }
-  request.ends.from = parse_vector("--from", options.from, names);
-  request.ends.to = parse_vector("--to", options.to, names);
-  check_end("--from", options.from, request.run.dynamics, request.ends.from);
-  check_end("--to", options.to, request.run.dynamics, request.ends.to);
-  request.ends.time = parse_positive("--time", options.time);
+  request.ends = parse_ends(options.from, options.to, options.time, request.run);
   request.along = parse_along(options.along, request.run, request.ends);
   if (!options.guess.empty() && !options.rank.empty()) {
     refuse("--rank", options.rank, "given besides --guess", "one of the two");

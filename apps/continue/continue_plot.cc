@@ -121,8 +121,8 @@ std::string draw_continuation(const std::string& file,
   plots::SeriesPage page;
   page.title = plots::escaped(fmt::format("{}: geodesics from {} to {} in time {:g}",
                                           request.run.entry->info.name,
-                                          text_vector(ends.from),
-                                          text_vector(ends.to),
+                                          end_text(ends.from, ends.free_from),
+                                          end_text(ends.to, ends.free_to),
                                           ends.time));
   const auto count = [](std::size_t number, const std::string& what) {
     return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");

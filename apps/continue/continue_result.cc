@@ -42,13 +42,14 @@ Json value_json(const Along& along, const std::vector<double>& value) {
   return is_vector(along) ? Json(value) : Json(value.front());
 }
 
-Json point_json(const Along& along, const ContinuationPoint& point) {
+Json point_json(const ContinueRequest& request, const ContinuationPoint& point) {
+  const Along& along = request.along;
   const Geodesic& geodesic = point.geodesic;
   Json json;
   json["branch"] = point.branch;
   json["s"] = point.s;
   json["value"] = value_json(along, along.value(point.s));
-  add_extremal(geodesic, json);
+  add_extremal(geodesic, request.ends, json);
   json["morse_index"] = or_null(geodesic.morse_index);
   json["label"] = name_of(geodesic.label);
   return json;
@@ -73,11 +74,10 @@ Json report_json(const ContinueRequest& request,
                  const std::vector<std::string>& arguments) {
   const Along& along = request.along;
   Json points = Json::array();
-  for (const ContinuationPoint& point : report.points) points.push_back(point_json(along, point));
+  for (const ContinuationPoint& point : report.points) points.push_back(point_json(request, point));
   Json branches = Json::array();
   for (const ContinuationStatus end : report.branch_ends) branches.push_back(status_name(end));
-  const auto& [from, to, time] = request.ends;
-  Json json = problem_json(arguments, request.run, from, to, time);
+  Json json = problem_json(arguments, request.run, request.ends);
   json["along"] = {{"name", along.name},
                    {"start", value_json(along, along.start)},
                    {"end", value_json(along, along.end)}};

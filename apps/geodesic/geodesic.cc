@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "carnot/language/nearest.h"
-#include "catalogue/holonomic_check.h"
 #include "catalogue/scene_choice.h"
 #include "geodesic/geodesic_result.h"
 #include "run/subcommands.h"
@@ -29,12 +28,15 @@ On failure "reason" is a code, in the order of how far the best attempt came:
 no-start-converged, singular-coordinates (most paths ran into one), guess-failed, not-refined,
 flow-failed, not-joined, not-verified, beyond-double (round-off exceeds the tolerance), too-long (for
 --max-length); "message" says more and what to try.
+A coordinate of an end that is * is free: its momentum vanishes there. What was found is
+"from_found" and "to_found" in the JSON, the largest such momentum "transversality_error".
 Angles are radians; pi/2 and -3*pi/4 are numbers. Units are the scene's own: see
 `carnot scenes SCENE`.
 
 Examples
   carnot geodesic vehicle --from 0,0,0,0 --to 0,1,0,0 --plot parking.png
   carnot geodesic vehicle --from -3,4,-pi/2,0 --to 0,0,0,0 --count 4 --json
+  carnot geodesic vehicle --from 0,0,0,0 --to '0,1,0,*' --plot free_wheel.png
   carnot geodesic heisenberg-group --from 0,0,0 --to 1,0,0.2 --all --max-length 10 --output all.csv
 
 Exit status: 0 found (also when fewer than --count exist), 1 nothing converged, 2 bad input,
@@ -96,14 +98,7 @@ GeodesicOptions check_search(const GeodesicCall& options, const Run& run) {
 GeodesicRequest check(const GeodesicCall& options) {
   GeodesicRequest request;
   request.run = check(options.run);
-  const auto names = coordinate_names(*request.run.entry);
-  if (options.from.empty()) refuse_missing("--from", vector_accepted(names));
-  if (options.to.empty()) refuse_missing("--to", vector_accepted(names));
-  request.from = parse_vector("--from", options.from, names);
-  request.to = parse_vector("--to", options.to, names);
-  check_end("--from", options.from, request.run.dynamics, request.from);
-  check_end("--to", options.to, request.run.dynamics, request.to);
-  request.time = parse_positive("--time", options.time);
+  request.ends = parse_ends(options.from, options.to, options.time, request.run);
   request.options = check_search(options, request.run);
   return request;
 }
@@ -112,16 +107,15 @@ GeodesicReport search(const GeodesicRequest& request) {
   ProgressBar bar("%", 100, request.run.destination.quiet);
   GeodesicOptions options = request.options;
   options.progress = bar.callback();
-  return find_geodesics(
-      BoundaryValueProblem(request.run.dynamics, request.from, request.to, request.time), options);
+  return find_geodesics(problem_between(request.run.dynamics, request.ends), options);
 }
 
 void add_search_options(CLI::App& app, GeodesicCall& options) {
   const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
     app.add_option(name, value, help)->type_name(type);
   };
-  add("--from", options.from, "Q0", "configuration at the start, e.g. -3,4,-pi/2,0");
-  add("--to", options.to, "Q1", "configuration at the end");
+  add("--from", options.from, "Q0", "configuration at the start, e.g. -3,4,-pi/2,0; * is free");
+  add("--to", options.to, "Q1", "configuration at the end; * for a coordinate that is free");
   add("--time", options.time, "T", "how long it takes, > 0 (1)");
   add("--count", options.count, "K", "up to K extremals (1)");
   app.add_flag("--all", options.all, "every extremal that is found, instead of --count");

@@ -12,9 +12,12 @@
 namespace carnot::apps {
 namespace {
 
-Json geodesic_json(const Geodesic& geodesic, std::size_t rank, bool with_trajectory) {
+Json geodesic_json(const Geodesic& geodesic,
+                   const Ends& ends,
+                   std::size_t rank,
+                   bool with_trajectory) {
   Json json;
-  add_extremal(geodesic, json);
+  add_extremal(geodesic, ends, json);
   json["constraint_error"] = geodesic.constraint_error;
   json["energy_drift"] = geodesic.energy_drift;
   json["conjugate_times"] = or_null(geodesic.conjugate_times);
@@ -36,9 +39,10 @@ Json report_json(const GeodesicRequest& request,
   const Run& run = request.run;
   Json geodesics = Json::array();
   for (const Geodesic& geodesic : report.geodesics) {
-    geodesics.push_back(geodesic_json(geodesic, geodesics.size() + 1, !run.no_trajectory));
+    geodesics.push_back(
+        geodesic_json(geodesic, request.ends, geodesics.size() + 1, !run.no_trajectory));
   }
-  Json json = problem_json(arguments, run, request.from, request.to, request.time);
+  Json json = problem_json(arguments, run, request.ends);
   json["status"] = report.status == GeodesicStatus::kConverged ? "converged" : "not_converged";
   const bool found = report.reason == Reason::kNone;
   json["reason"] = found ? Json(nullptr) : Json(name_of(report.reason));
@@ -96,14 +100,15 @@ std::string table(const GeodesicReport& report, const SceneInfo& info) {
 
 std::string report_text(const GeodesicRequest& request, const GeodesicReport& report) {
   const Run& run = request.run;
+  const Ends& ends = request.ends;
   const std::size_t found = report.geodesics.size();
   std::string text = fmt::format("{}: {} geodesic{} from {} to {} in time {:g}\n",
                                  run.entry->info.name,
                                  found,
                                  found == 1 ? "" : "s",
-                                 text_vector(request.from),
-                                 text_vector(request.to),
-                                 request.time);
+                                 end_text(ends.from, ends.free_from),
+                                 end_text(ends.to, ends.free_to),
+                                 ends.time);
   if (found > 0) text += '\n' + table(report, run.entry->info) + '\n';
   text += fmt::format("{} of {} starts converged, {}, {:.3g} s\n",
                       report.converged_starts,

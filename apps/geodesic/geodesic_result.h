@@ -6,15 +6,14 @@
 
 #include "carnot/shooting/find_geodesics.h"
 #include "run/delivery.h"
+#include "run/ends.h"
 #include "run/run_options.h"
 
 namespace carnot::apps {
 
 struct GeodesicRequest {
   Run run;
-  std::vector<double> from;
-  std::vector<double> to;
-  double time = 1;
+  Ends ends;
   GeodesicOptions options;
 };
 

@@ -18,22 +18,18 @@ const char* name_of(Label label) {
   return "unknown";
 }
 
-Json problem_json(const std::vector<std::string>& arguments,
-                  const Run& run,
-                  const std::vector<double>& from,
-                  const std::vector<double>& to,
-                  double time) {
+Json problem_json(const std::vector<std::string>& arguments, const Run& run, const Ends& ends) {
   Json json = result_head(arguments);
   json["scene"] = run.entry->info.name;
   json["parameters"] = parameters_json(run);
-  json["from"] = from;
-  json["to"] = to;
-  json["time"] = time;
+  json["from"] = end_json(ends.from, ends.free_from);
+  json["to"] = end_json(ends.to, ends.free_to);
+  json["time"] = ends.time;
   json["method"] = run.method.name;
   return json;
 }
 
-void add_extremal(const Geodesic& geodesic, Json& json) {
+void add_extremal(const Geodesic& geodesic, const Ends& ends, Json& json) {
   const bool single = geodesic.verification == Verification::kSingle;
   json["p0"] = geodesic.p0;
   json["lambda0"] = geodesic.lambda0;
@@ -42,6 +38,10 @@ void add_extremal(const Geodesic& geodesic, Json& json) {
   json["verification"] = single ? "single" : "knots";
   json["endpoint_error"] = single ? Json(geodesic.endpoint_error) : Json(nullptr);
   json["knot_defect"] = single ? Json(nullptr) : Json(geodesic.knot_defect);
+  if (!has_free(ends)) return;
+  json["from_found"] = geodesic.from;
+  json["to_found"] = geodesic.to;
+  json["transversality_error"] = geodesic.transversality_error;
 }
 
 std::vector<std::string> geodesic_cells(const Geodesic& geodesic) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "carnot/shooting/geodesic.h"
+#include "run/ends.h"
 #include "run/run_options.h"
 
 namespace carnot::apps {
@@ -13,14 +14,10 @@ namespace carnot::apps {
 const char* name_of(Label label);
 
 // How the JSON of such a subcommand begins: up to "method".
-Json problem_json(const std::vector<std::string>& arguments,
-                  const Run& run,
-                  const std::vector<double>& from,
-                  const std::vector<double>& to,
-                  double time);
+Json problem_json(const std::vector<std::string>& arguments, const Run& run, const Ends& ends);
 
-// Adds "p0" to "knot_defect".
-void add_extremal(const Geodesic& geodesic, Json& json);
+// Adds "p0" to "knot_defect" and, where ends are free, what was found there.
+void add_extremal(const Geodesic& geodesic, const Ends& ends, Json& json);
 
 // Its action, length, error and label, for people.
 std::vector<std::string> geodesic_cells(const Geodesic& geodesic);

@@ -65,6 +65,26 @@ std::vector<std::string_view> split_at_commas(std::string_view text) {
   }
 }
 
+// As many items as asked for, each a real or, where that is allowed, `*` for nothing.
+std::vector<std::optional<double>> read_vector(std::string_view option,
+                                               std::string_view text,
+                                               std::size_t count,
+                                               bool allows_free,
+                                               const std::string& accepted) {
+  const auto items = split_at_commas(text);
+  std::vector<std::optional<double>> values;
+  for (const std::string_view item : items) {
+    values.push_back(read_real(item));
+    if (values.back() || (allows_free && item == "*")) continue;
+    refuse(option, text, fmt::format("'{}' is not a finite number", item), accepted);
+  }
+  if (items.size() != count) {
+    const std::string_view plural = items.size() == 1 ? "" : "s";
+    refuse(option, text, fmt::format("{} number{} given", items.size(), plural), accepted);
+  }
+  return values;
+}
+
 template <class Integer>
 std::optional<Integer> read_integer(std::string_view text) {
   Integer value = 0;
@@ -128,19 +148,21 @@ std::string vector_accepted(const std::vector<std::string>& names) {
 std::vector<double> parse_vector(std::string_view option,
                                  std::string_view text,
                                  const std::vector<std::string>& names) {
-  const std::string accepted = vector_accepted(names);
-  const auto items = split_at_commas(text);
   std::vector<double> values;
-  for (const std::string_view item : items) {
-    const auto value = read_real(item);
-    if (!value) refuse(option, text, fmt::format("'{}' is not a finite number", item), accepted);
+  for (const auto& value : read_vector(option, text, names.size(), false, vector_accepted(names))) {
     values.push_back(*value);
   }
-  if (items.size() != names.size()) {
-    const std::string_view plural = items.size() == 1 ? "" : "s";
-    refuse(option, text, fmt::format("{} number{} given", items.size(), plural), accepted);
-  }
   return values;
+}
+
+std::string end_accepted(const std::vector<std::string>& names) {
+  return vector_accepted(names) + ", or * for a free coordinate";
+}
+
+std::vector<std::optional<double>> parse_end(std::string_view option,
+                                             std::string_view text,
+                                             const std::vector<std::string>& names) {
+  return read_vector(option, text, names.size(), true, end_accepted(names));
 }
 
 long parse_integer(std::string_view option, std::string_view text, long lowest, long highest) {

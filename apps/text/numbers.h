@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,6 +36,13 @@ std::vector<double> parse_vector(std::string_view option,
                                  const std::vector<std::string>& names);
 
 std::string vector_accepted(const std::vector<std::string>& names);
+
+// The same for an end of a geodesic, with nothing where it says `*`: that coordinate is free.
+std::vector<std::optional<double>> parse_end(std::string_view option,
+                                             std::string_view text,
+                                             const std::vector<std::string>& names);
+
+std::string end_accepted(const std::vector<std::string>& names);
 
 // A decimal integer between `lowest` and `highest`, both included.
 long parse_integer(std::string_view option, std::string_view text, long lowest, long highest);

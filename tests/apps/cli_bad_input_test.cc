@@ -65,6 +65,9 @@ std::vector<BadInput> with_base(const std::string& base, const std::vector<BadIn
 
 const std::vector<BadInput> kFlowData{
     {"flow", "SCENE ''"},
+    {"geodesic spherical-pendulum --from 0,0,-1 --to 1,0,*", "ties to the others"},
+    {"geodesic vehicle --from 0,0,0,0 --to 0,1,0,x", "or * for a free coordinate"},
+    {"flow vehicle --from 0,0,0,* --momentum 1,0,0,0 --time 1 --steps 9", "'*' is not"},
     {"flow car --from 0,0,0,0", "'car'"},
     {"flow --from 0,0,0,0 --momentum 1,0,0,0 --time 1 --steps 10", "SCENE ''"},
     {"flow vehicle --momentum 1,0,0,0 --time 1 --steps 10", "--from ''"},

@@ -113,6 +113,17 @@ TEST(ContinueCommand, StartsFromAGuess) {
   }
 }
 
+TEST(ContinueCommand, KeepsFreeEnds) {
+  const Words words{"continue", "vehicle", "--from", "0,0,0,0", "--to", "0,1,0,*", "--json"};
+  const auto json = run(with(words, {"--along", "to=0,0.5,0,*"})).json();
+  EXPECT_EQ(json["status"], "reached");
+  EXPECT_EQ(json["to"].dump(), "[0,1,0,null]");
+  for (const auto& point : json["points"]) EXPECT_LE(point["transversality_error"], 1e-9);
+  const Outcome other = run(with(words, {"--along", "to=0,0.5,0,1"}));
+  EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.err, HasSubstr("other coordinates are free than at the start"));
+}
+
 TEST(ContinueCommand, WritesFiles) {
   const Sandbox sandbox;
   const Outcome outcome =

@@ -143,6 +143,27 @@ TEST(GeodesicCommand, ModAngles) {
   EXPECT_EQ(identified["windings"].dump(), "[0,0,-1]");
 }
 
+TEST(GeodesicCommand, TakesFreeEnds) {
+  const Words words{"geodesic", "vehicle", "--from", "0,0,0,*", "--to", "0,1,0,*"};
+  const Outcome table = run(words);
+  EXPECT_THAT(table.out, HasSubstr("from (0, 0, 0, *) to (0, 1, 0, *)"));
+  const auto json = run(with(words, {"--json"})).json();
+  EXPECT_EQ(json["from"].dump(), "[0,0,0,null]");
+  EXPECT_EQ(json["to"].dump(), "[0,1,0,null]");
+  const auto& geodesic = json["geodesics"][0];
+  EXPECT_LE(geodesic["endpoint_error"].get<double>(), 1e-10);
+  EXPECT_LE(geodesic["transversality_error"].get<double>(), 1e-9);
+  EXPECT_EQ(geodesic["p0"][3], 0);
+  const auto& q = geodesic["trajectory"]["q"];
+  for (const int j : {0, 1, 2, 3}) {
+    EXPECT_NEAR(geodesic["from_found"][j], q.front()[j], 1e-12);
+    EXPECT_NEAR(geodesic["to_found"][j], q.back()[j], 1e-9);
+  }
+  EXPECT_EQ(geodesic["to_found"][1], 1);
+  EXPECT_NE(geodesic["to_found"][3], 0);
+  EXPECT_EQ(run(parking({"--json"})).json()["geodesics"][0].count("to_found"), 0);
+}
+
 TEST(GeodesicCommand, DoesNotDependOnThreads) {
   const auto answer = [](const char* threads) {
     auto json = run(parking({"--json", "--threads", threads, "--seed", "7"})).json();

@@ -110,6 +110,22 @@ TEST(ParseVector, NamesWhatIsWrong) {
   }
 }
 
+TEST(ParseEnd, TakesStarsForFreeCoordinates) {
+  using std::nullopt;
+  EXPECT_EQ(parse_end("--to", "1,*, * ,pi", {"x", "y", "a", "b"}),
+            (std::vector<std::optional<double>>{1, nullopt, nullopt, pi}));
+  for (const std::string text : {"", "**", "1*,2", "*", "*,*,*", "2,*x"}) {
+    EXPECT_THAT(message_of([&] {
+                  parse_end("--to", text, {"x", "y"});
+                }),
+                AllOf(HasSubstr("--to '" + text + "'"), HasSubstr("or * for a free coordinate")));
+  }
+  EXPECT_THAT(message_of([] {
+                parse_vector("--guess", "1,*", {"x", "y"});
+              }),
+              HasSubstr("'*' is not a finite number"));
+}
+
 TEST(ParseInteger, IsStrict) {
   EXPECT_EQ(parse_integer("--n", "42", 1, 100), 42);
   EXPECT_EQ(parse_integer("--n", "-3", -5, 100), -3);

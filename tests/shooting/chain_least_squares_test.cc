@@ -43,6 +43,33 @@ TEST(ChainLeastSquares, SolvesALinearProblem) {
   }
 }
 
+// A free number of an end follows its neighbours: all points are at the height of the other end, or
+// where the residual r = x - 3 of the last interval pulls them.
+TEST(ChainLeastSquares, MovesWhatIsFreeOfTheEnds) {
+  std::vector<double> x{1, -2, 7, 7, 0, 3, -5, 1, 9, 2};
+  ChainOptions options = to_the_end();
+  options.free_first = {false, true};
+  EXPECT_GT(minimise_chain(stretched, 2, 2, options, x), 0);
+  for (int i = 0; i <= 4; ++i) {
+    EXPECT_NEAR(x[2 * i], 1 + 2 * i, kDamped);
+    EXPECT_NEAR(x[2 * i + 1], 2, kDamped);
+  }
+  const auto pulled = [](int i, const double* at, double* residual, double* jacobian) {
+    residual[0] = at[1] - at[0];
+    residual[1] = i == 2 ? at[1] - 3 : 0;
+    if (jacobian == nullptr) return true;
+    const double derivative[] = {-1, 1, 0, i == 2 ? 1.0 : 0.0};
+    std::copy(std::begin(derivative), std::end(derivative), jacobian);
+    return true;
+  };
+  std::vector<double> line{0, 5, 5, 5};
+  options.free_first = {};
+  options.free_last = {true};
+  EXPECT_GT(minimise_chain(pulled, 2, 1, options, line), 0);
+  // Three springs from 0 to x and one from x to 3: x / 3 = 3 - x.
+  for (int i = 0; i <= 3; ++i) EXPECT_NEAR(line[i], 0.75 * i, kDamped);
+}
+
 // Residuals x_{i+1} - x_i and c (x_i^2 - 1), which are not linear.
 double cost_of(const std::vector<double>& x, std::vector<double>* slope) {
   double sum = 0;

@@ -39,7 +39,7 @@ double action(const BoundaryValueProblem& problem, const Path& path) {
 
 // Residual relative to the momenta.
 double residual(const BoundaryValueProblem& problem, const Path& path) {
-  DiscreteEquations equations(problem.dynamics, problem.time / path.intervals, path.intervals);
+  DiscreteEquations equations(problem, path.intervals);
   std::vector<double> values;
   const double largest = equations.evaluate(path, values, nullptr);
   double worst = 0;

@@ -32,8 +32,10 @@ MATCHER_P(DiffersBy, allowed, "") {
   return std::abs(std::get<0>(arg) - std::get<1>(arg)) <= allowed;
 }
 
+Dynamics unicycle_dynamics() { return test::unicycle({0, 0, 0}, {0, 0, 0}).dynamics; }
+
 const SteeringFunction& unicycle() {
-  static const SteeringFunction kSteer(test::unicycle({0, 0, 0}, {0, 0, 0}).dynamics);
+  static const SteeringFunction kSteer(unicycle_dynamics());
   return kSteer;
 }
 
@@ -287,6 +289,33 @@ TEST(SteeringFunctionTest, RefusalsHaveAReason) {
   EXPECT_FALSE(unicycle().interpolate(a, b, 0.5, shorter));
 }
 
+// A planner that does not care for the heading: the distance is the least over all headings, and
+// the number that is given for it does not count.
+TEST(SteeringFunctionTest, LeavesCoordinatesOfTheTargetFree) {
+  constexpr int kHeadings = 24;
+  SteeringOptions options;
+  options.free_target = {false, false, true};
+  const SteeringFunction free(unicycle_dynamics(), options);
+  EXPECT_FALSE(free.symmetric());
+  const Pose a{0.3, -0.2, 0.7};
+  const Pose b{1, 1.5, 0};
+  const double distance = free.distance(a, b);
+  EXPECT_EQ(free.distance(a, Pose{1, 1.5, 3}), distance);
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kHeadings; ++i) {
+    const double heading = 2 * kPi * i / kHeadings;
+    least = std::min(least, unicycle().distance(a, Pose{1, 1.5, heading}));
+  }
+  EXPECT_LE(distance, least * (1 + kTolerance));
+  EXPECT_GE(distance, least * (1 - 0.01));  // a heading is at most 0.13 away from the best one
+  const Pose end = point(free, a, b, 1);
+  EXPECT_EQ(end[0], b[0]);
+  EXPECT_EQ(end[1], b[1]);
+  EXPECT_NEAR(unicycle().distance(a, end), distance, kRootOfTolerance);
+  EXPECT_LE(size_of_step(point(free, a, b, 1 - 1e-6), end), 1e-5 * distance);
+  EXPECT_EQ(free.distance(a, Pose{0.3, -0.2, 2}), 0);  // only the heading differs
+}
+
 TEST(SteeringFunctionTest, RefusesBadOptions) {
   const Dynamics dynamics = test::unicycle({0, 0, 0}, {0, 0, 0}).dynamics;
   const auto with = [](auto set) {
@@ -298,6 +327,7 @@ TEST(SteeringFunctionTest, RefusesBadOptions) {
                                      with([](auto& o) { o.starts = -1; }),
                                      with([](auto& o) { o.tolerance = 0; }),
                                      with([](auto& o) { o.threads = -1; }),
+                                     with([](auto& o) { o.free_target = {true}; }),
                                      with([](auto& o) { o.resolution = NAN; })}) {
     EXPECT_THROW(SteeringFunction(dynamics, bad), std::invalid_argument);
   }

@@ -20,13 +20,13 @@ const std::vector<double> kShort{0.01, -0.005, 3e-4};
 // An extremal of the Heisenberg group and the matrix of a shear, which is symplectic.
 struct UnitsTest : testing::Test {
   BoundaryValueProblem problem = test::heisenberg_group({0.01, 0, 1e-5}, 2);
-  Units units{problem, kShort.data()};
+  Units units{problem, kShort};
   MatrixXd shear = test::symplectic_shear(3);
 };
 
 TEST_F(UnitsTest, LongExtremalsNeedNone) {
   const std::vector<double> p0{1, 0, 0};
-  const Units none(problem, p0.data());
+  const Units none(problem, p0);
   EXPECT_FALSE(none.scaled());
   EXPECT_EQ(none.map(shear), shear);
   EXPECT_EQ(none.tangent(shear.rightCols(3)), shear.rightCols(3));
@@ -36,7 +36,7 @@ TEST_F(UnitsTest, LongExtremalsNeedNone) {
 TEST_F(UnitsTest, ScenesWithoutTranscriptionHaveNone) {
   const BoundaryValueProblem other = test::oscillator({0, 0}, {1e-3, 0}, 1);
   const std::vector<double> p0{1e-3, 0};
-  EXPECT_EQ(Units(other, p0.data()).scaled(), other.dynamics.has_transcription());
+  EXPECT_EQ(Units(other, p0).scaled(), other.dynamics.has_transcription());
 }
 
 TEST_F(UnitsTest, KeepSymplecticMaps) {

@@ -1,5 +1,6 @@
 #include "carnot/shooting/boundary_value_problem.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -23,6 +24,18 @@ void check_end(const char* name, const std::vector<double>& q, const Dynamics& d
   }
 }
 
+void check_free(const char* name, const std::vector<bool>& free, const Dynamics& dynamics) {
+  if (free.empty()) return;
+  if (static_cast<int>(free.size()) != dynamics.dof) {
+    throw std::invalid_argument(std::string(name) + " has " + std::to_string(free.size()) +
+                                " components, the scene has " + std::to_string(dynamics.dof));
+  }
+  if (dynamics.holonomic > 0 && std::find(free.begin(), free.end(), true) != free.end()) {
+    throw std::invalid_argument(
+        "a free coordinate on a manifold h(q) = 0, which ties it to the others");
+  }
+}
+
 }  // namespace
 
 RateStatus end_status(const Dynamics& dynamics, const std::vector<double>& q) {
@@ -35,9 +48,18 @@ RateStatus end_status(const Dynamics& dynamics, const std::vector<double>& q) {
   return at_rest ? RateStatus::kOk : status;
 }
 
+bool BoundaryValueProblem::has_free_ends() const {
+  const auto any = [](const std::vector<bool>& free) {
+    return std::find(free.begin(), free.end(), true) != free.end();
+  };
+  return any(free_from) || any(free_to);
+}
+
 void BoundaryValueProblem::validate() const {
   check_end("from", from, dynamics);
   check_end("to", to, dynamics);
+  check_free("free_from", free_from, dynamics);
+  check_free("free_to", free_to, dynamics);
   if (!(time > 0) || !std::isfinite(time)) {
     throw std::invalid_argument("time is " + std::to_string(time) + ", must be > 0");
   }

@@ -17,6 +17,10 @@ struct BoundaryValueProblem {
   std::vector<double> from;  // q(0), length n
   std::vector<double> to;    // q(T), length n
   double time = 1;           // T > 0
+  // Which coordinates of an end are free; empty: none. The number in `from` or `to` is where the
+  // search begins to look for such a coordinate.
+  std::vector<bool> free_from;
+  std::vector<bool> free_to;
 
   // make_dynamics.h makes a Dynamics of a scene.
   BoundaryValueProblem(Dynamics system,
@@ -28,8 +32,12 @@ struct BoundaryValueProblem {
         to(std::move(target)),
         time(duration) {}
 
+  [[nodiscard]] bool is_free_from(int j) const { return !free_from.empty() && free_from[j]; }
+  [[nodiscard]] bool is_free_to(int j) const { return !free_to.empty() && free_to[j]; }
+  [[nodiscard]] bool has_free_ends() const;
+
   // Throws std::invalid_argument: wrong lengths, values that are not finite, T <= 0, constraints
-  // that are dependent at an end.
+  // that are dependent at an end, free ends on a manifold h(q) = 0.
   void validate() const;
 };
 

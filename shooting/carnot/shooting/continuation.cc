@@ -49,14 +49,17 @@ Place starting_place(const BoundaryValueProblem& asked,
                      const BoundaryValueProblem& problem,
                      const Geodesic& start,
                      long steps) {
+  const std::vector<double> origin = origin_of(asked);
   if (start.verification == Verification::kSingle) {
-    return {knots_of(problem, start.p0, 1, steps), 0};
+    // An extremal that is known by its momentum alone starts where the problem does.
+    std::vector<double> z = start.from.empty() ? asked.from : start.from;
+    for (std::size_t j = 0; j < origin.size(); ++j) z[j] -= origin[j];
+    z.insert(z.end(), start.p0.begin(), start.p0.end());
+    return {knots_of(problem, start_unknowns(problem, z.data()), 1, steps), 0};
   }
   Place place{knots_of(start.trajectory, kFirstSegments), 0};
   for (int i = 0; i <= place.knots.segments; ++i) {
-    for (int j = 0; j < place.knots.dof; ++j) {
-      place.knots.at(i)[j] += problem.from[j] - asked.from[j];
-    }
+    for (int j = 0; j < place.knots.dof; ++j) place.knots.at(i)[j] -= origin[j];
   }
   return place;
 }

@@ -10,6 +10,7 @@
 #include "carnot/shooting/extremal/classification.h"
 #include "carnot/shooting/extremal/ranking.h"
 #include "carnot/shooting/linear/round_off.h"
+#include "carnot/shooting/problem/ends.h"
 #include "carnot/shooting/problem/origin.h"
 #include "carnot/shooting/problem/windings.h"
 #include "carnot/shooting/search/failure.h"
@@ -24,17 +25,27 @@ namespace {
 
 constexpr long kFewSteps = 32;  // of the path that does not move
 
-// Moves the answer back.
-void move_to(const BoundaryValueProblem& problem, Geodesic& geodesic) {
-  for (const int j : movable(problem.dynamics.info)) {
-    for (std::vector<double>& q : geodesic.trajectory.q) q[j] += problem.from[j];
+// Moves the answer back to where `origin` is.
+void move_to(const std::vector<double>& origin, Geodesic& geodesic) {
+  for (std::size_t j = 0; j < origin.size(); ++j) {
+    for (std::vector<double>& q : geodesic.trajectory.q) q[j] += origin[j];
+    geodesic.from[j] += origin[j];
+    geodesic.to[j] += origin[j];
   }
 }
 
 // from = to: the path that does not move.
 Extremal constant_path(const BoundaryValueProblem& problem) {
   Extremal extremal;
-  extremal.knots = knots_of(problem, std::vector<double>(problem.dynamics.dof, 0.0), 1, kFewSteps);
+  extremal.knots.segments = 1;
+  extremal.knots.dof = problem.dynamics.dof;
+  for (int i = 0; i <= extremal.knots.segments; ++i) {
+    std::vector<double>& z = extremal.knots.z;
+    z.insert(z.end(), problem.from.begin(), problem.from.end());
+    z.resize(z.size() + problem.from.size(), 0.0);
+  }
+  extremal.geodesic.from = problem.from;
+  extremal.geodesic.to = problem.from;
   extremal.geodesic.p0.assign(problem.dynamics.dof, 0.0);
   extremal.geodesic.lambda0.assign(problem.dynamics.multipliers, 0.0);
   extremal.geodesic.length = 0;
@@ -42,11 +53,21 @@ Extremal constant_path(const BoundaryValueProblem& problem) {
   return extremal;
 }
 
+// The problem with a start that is its target, too, where free coordinates allow that.
+BoundaryValueProblem at_rest(const BoundaryValueProblem& problem) {
+  BoundaryValueProblem resting = problem;
+  for (int j = 0; j < problem.dynamics.dof; ++j) {
+    if (problem.is_free_from(j) && !problem.is_free_to(j)) resting.from[j] = problem.to[j];
+  }
+  return resting;
+}
+
 // Whether from = to needs no search: with velocity constraints the path that does not move is
 // returned; elsewhere drift or a force may forbid it.
 bool stays(const BoundaryValueProblem& problem) {
-  if (problem.from != problem.to) return false;
+  if (distance_between_ends(problem) > 0) return false;
   if (problem.dynamics.has_transcription()) return true;
+  if (problem.has_free_ends()) return false;
   std::vector<double> z = problem.from;
   z.resize(2 * problem.from.size(), 0.0);
   const StepPlan plan = StepPlan::equal(0, problem.time, kFewSteps);
@@ -74,7 +95,7 @@ void search_image(const GeodesicOptions& options, Found& found) {
   const BoundaryValueProblem& problem = found.problems.back();
   const int image = static_cast<int>(found.problems.size()) - 1;
   if (stays(problem)) {
-    found.list.push_back(constant_path(problem));
+    found.list.push_back(constant_path(at_rest(problem)));
     found.list.back().image = image;
     return;
   }
@@ -147,7 +168,7 @@ GeodesicReport find_geodesics(const BoundaryValueProblem& asked, const GeodesicO
   parallel_for(static_cast<int>(list.size()), thread_count(options.threads), [&](int i) {
     list[i].geodesic.windings = images[list[i].image].windings;
     complete(found.problems[list[i].image], options.samples, list[i]);
-    move_to(asked, list[i].geodesic);
+    move_to(origin_of(asked), list[i].geodesic);
   });
   for (Extremal& extremal : list) report.geodesics.push_back(std::move(extremal.geodesic));
   report.starts = found.starts;

@@ -15,13 +15,16 @@ enum class Label { kLocallyMinimal, kConjugatePassed, kSingular, kUnknown };
 
 // An extremal that joins the two configurations, checked.
 struct Geodesic {
+  std::vector<double> from;  // q(0) and q(T): the ends of the problem, and what was found where
+  std::vector<double> to;    // they are free
   std::vector<double> p0;
   std::vector<double> lambda0;
   double action = 0;
   std::optional<double> length;  // where the scene has a mass matrix
   Verification verification = Verification::kSingle;
-  double endpoint_error = 0;  // max-norm of q(T) - to; of an independent integration
-  double knot_defect = 0;     // max-norm of flow(z_i) - z_{i+1}, for kKnots
+  double endpoint_error = 0;        // max-norm of q(T) - to; of an independent integration
+  double transversality_error = 0;  // max |p_j(T)| of free coordinates, of the same
+  double knot_defect = 0;           // max-norm of flow(z_i) - z_{i+1}, for kKnots
   double constraint_error = 0;
   double energy_drift = 0;
   std::optional<std::vector<double>> conjugate_times;  // in (0, T], by multiplicity; if known

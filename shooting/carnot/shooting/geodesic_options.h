@@ -18,7 +18,8 @@ struct GeodesicOptions {
   double tolerance = 1e-10;          // largest endpoint error of a verified extremal
   std::string minimiser = "newton";  // newton, ceres, nlopt, nlopt:NAME (see minimisers())
   bool mod_angles = false;           // angles need to agree modulo their periods only
-  std::vector<double> guess;         // p0 to start from instead of paths; empty: none
+  // p0 to start from instead of paths, with q_j(0) for free coordinates; empty: none.
+  std::vector<double> guess;
   std::uint64_t seed = 0;
   int threads = 0;     // 0: all cores
   long samples = 201;  // times in each trajectory; 0: none

@@ -6,6 +6,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "carnot/shooting/problem/ends.h"
 #include "carnot/shooting/shoot/end_point.h"
 #include "carnot/shooting/steer/end_point_model.h"
 
@@ -68,8 +69,16 @@ class WarmStart::Implementation {
  private:
   using Vector = EndPointModel::Vector;
 
-  // q(T) from p0. False when the flow fails.
+  // q(T) from the unknowns of the start, p_j(T) in the place of what is free. False when the flow
+  // fails.
   [[nodiscard]] bool end_of(const StepPlan& plan, const Vector& p0, Vector& q) const;
+
+  // What is asked for at `to`: zero for the momenta of free coordinates.
+  [[nodiscard]] Vector target_of(const double* to) const {
+    Vector target(problem_.dynamics.dof);
+    for (int j = 0; j < problem_.dynamics.dof; ++j) target[j] = problem_.is_free_to(j) ? 0 : to[j];
+    return target;
+  }
 
   BoundaryValueProblem problem_;
   double tolerance_;
@@ -95,24 +104,24 @@ WarmStart::Implementation::Implementation(const BoundaryValueProblem& problem,
   constexpr double kStricter = 0.01;  // the error of the check over that of the others
   constexpr double kArrives = 1e-6;
   if (!model_.invertible()) return;
-  std::vector<double> start = problem.from;
-  start.insert(start.end(), p0.begin(), p0.end());
+  const std::vector<double> start = phase_point(problem, p0);
   rough_ = plan_for(problem, start, roughness_);
   plan_ = plan_for(problem, start, kFine * tolerance);
   const double shorter = std::pow(kStricter, -1.0 / problem.dynamics.order);
   check_ = StepPlan::equal(0, problem.time, std::lround(std::ceil(shorter * plan_.count)));
   check_.stop = kStricter * plan_.stop;
   ready_ = end_of(plan_, p0_, end_) &&
-           largest_difference(end_.data(), problem.to.data(), problem.dynamics.dof) <= kArrives;
+           (end_ - target_of(problem.to.data())).cwiseAbs().maxCoeff() <= kArrives;
 }
 
 bool WarmStart::Implementation::end_of(const StepPlan& plan, const Vector& p0, Vector& q) const {
   const int n = problem_.dynamics.dof;
   std::array<double, 2 * EndPointModel::kMostDof> z{};
   std::copy(problem_.from.begin(), problem_.from.end(), z.begin());
-  std::copy(p0.data(), p0.data() + n, z.begin() + n);
+  for (int j = 0; j < n; ++j) z[start_index(problem_, j)] = p0[j];
   if (!problem_.dynamics.flow(plan, std::span(z).first(2 * n)).completed()) return false;
-  q = Eigen::Map<const Vector>(z.data(), n);
+  q.resize(n);
+  for (int j = 0; j < n; ++j) q[j] = z[target_index(problem_, j)];
   return q.allFinite();
 }
 
@@ -124,7 +133,7 @@ WarmStartReport WarmStart::Implementation::solve(const double* to, double* p0) c
   std::copy(p0_.data(), p0_.data() + n, p0);
   WarmStartReport report;
   if (!ready_) return report;
-  const Eigen::Map<const Vector> target(to, n);
+  const Vector target = target_of(to);
   Vector p = p0_;
   Vector residual = end_ - target;
   double error = residual.cwiseAbs().maxCoeff();

@@ -25,8 +25,8 @@ struct WarmStartReport {
 // Cheap to copy.
 class WarmStart {
  public:
-  // From p0, an extremal of `problem`: n^2 + n + 1 tangent flows. Throws std::invalid_argument on
-  // bad input.
+  // From p0, an extremal of `problem`: n^2 + n + 1 tangent flows. Where the start is free in
+  // coordinate j, here and below p0_j stands for q_j(0). Throws std::invalid_argument on bad input.
   WarmStart(const BoundaryValueProblem& problem,
             const std::vector<double>& p0,
             double tolerance = 1e-10);
@@ -35,9 +35,9 @@ class WarmStart {
   // its digits: solve() then fails at once.
   [[nodiscard]] bool ready() const;
 
-  // The geodesic from `from` to `to` (length n) that belongs to the same branch, if it is near: its
-  // momentum in `p0` (length n). On failure p0 is that of the known extremal. Thread-safe, no
-  // allocation.
+  // The geodesic from `from` to `to` (length n; what is free does not count) that belongs to the
+  // same branch, if it is near: its momentum in `p0` (length n). On failure p0 is that of the known
+  // extremal. Thread-safe, no allocation.
   [[nodiscard]] WarmStartReport solve(const double* to, double* p0) const;
 
  private:

@@ -33,17 +33,26 @@ LineEquations::LineEquations(const ProblemLine& line, const Knots& knots, double
       reference_(knots),
       steps_(steps),
       size_((2 * knots.segments - 1) * knots.dof),
-      weights_(size_) {
+      weights_(size_),
+      rows_(size_) {
   const BoundaryValueProblem problem = line.at(s);
   const ShootingEquations equations(problem, knots, steps);
   const double share = std::sqrt(static_cast<double>(knots.segments));
   for (int c = 0; c < 2 * knots.dof; ++c) scale_.push_back(equations.scale(c));
-  for (int c = 0; c < size_; ++c) weights_[c] = share * scale_[(c + knots.dof) % (2 * knots.dof)];
+  for (int c = 0; c < size_; ++c) {
+    places_.push_back(equations.place(c));
+    weights_[c] = share * equations.unit(c);
+  }
+  for (int i = 0, row = 0; i < knots.segments; row += equations.residuals(i), ++i) {
+    for (int r = 0; r < equations.residuals(i); ++r) {
+      rows_[row + r] = scale_[equations.component(i, r)];
+    }
+  }
 }
 
 Eigen::VectorXd LineEquations::unknowns(const Knots& knots, double s) const {
   Eigen::VectorXd x(size_ + 1);
-  for (int c = 0; c < size_; ++c) x[c] = knots.z[knots.dof + c] / weights_[c];
+  for (int c = 0; c < size_; ++c) x[c] = knots.z[places_[c]] / weights_[c];
   x[size_] = s;
   return x;
 }
@@ -51,7 +60,7 @@ Eigen::VectorXd LineEquations::unknowns(const Knots& knots, double s) const {
 Knots LineEquations::open_knots(const Eigen::VectorXd& x, const std::vector<double>& from) const {
   Knots knots = reference_;
   std::copy(from.begin(), from.end(), knots.z.begin());
-  for (int c = 0; c < size_; ++c) knots.z[knots.dof + c] = x[c] * weights_[c];
+  for (int c = 0; c < size_; ++c) knots.z[places_[c]] = x[c] * weights_[c];
   return knots;
 }
 
@@ -96,7 +105,9 @@ bool LineEquations::values(const Eigen::VectorXd& x, double s, Eigen::VectorXd& 
   for (int i = 0; i < knots.segments; ++i) {
     const int row = 2 * knots.dof * i;
     if (!equations.evaluate(i, knots.at(i), knots.at(i + 1), f.data() + row, nullptr)) return false;
-    for (int r = 0; r < equations.residuals(i); ++r) f[row + r] *= equations.scale(r);
+    for (int r = 0; r < equations.residuals(i); ++r) {
+      f[row + r] *= equations.scale(equations.component(i, r));
+    }
   }
   return true;
 }
@@ -107,9 +118,11 @@ bool LineEquations::add_derivative_in_s(const Eigen::VectorXd& x, Eigen::MatrixX
   auto column = jacobian.col(size_);
   column.setZero();
   if (line_.only_target) {
-    const std::vector<double> start = line_.at(0).to;
-    const std::vector<double> end = line_.at(1).to;
-    for (int j = 0; j < n; ++j) column[last + j] = -(end[j] - start[j]);
+    const BoundaryValueProblem start = line_.at(0);
+    const BoundaryValueProblem end = line_.at(1);
+    for (int j = 0; j < n; ++j) {
+      column[last + j] = target_value(start, j) - target_value(end, j);
+    }
   } else {
     const double s = std::clamp(x[size_], 0.0, 1.0);
     const double first = std::clamp(s - 2 * kSpacing, 0.0, 1 - (kNodes - 1) * kSpacing);
@@ -120,7 +133,7 @@ bool LineEquations::add_derivative_in_s(const Eigen::VectorXd& x, Eigen::MatrixX
       column += weights[i] / kSpacing * f;
     }
   }
-  for (int r = 0; r < size_; ++r) column[r] /= scale_[r % (2 * n)];
+  for (int r = 0; r < size_; ++r) column[r] /= rows_[r];
   return true;
 }
 
@@ -143,12 +156,14 @@ bool LineEquations::evaluate(const Eigen::VectorXd& x,
     double* values = residual.data() + row;
     if (!equations.evaluate(i, knots.at(i), knots.at(i + 1), values, block.data())) return false;
     for (int r = 0; r < equations.residuals(i); ++r) {
-      const double unit = equations.scale(r) / scale_[r];
+      const double unit = equations.scale(equations.component(i, r)) / rows_[row + r];
       values[r] *= unit;
       for (int c = i == 0 ? n : 0; c < 2 * n; ++c) {
-        const double entry = unit * block[r * 2 * n + c];
-        growth_ = std::max(growth_, std::abs(entry * scale_[c]));
-        jacobian(row + r, row - n + c) = entry * weights_[row - n + c];
+        const int unknown = row - n + c;
+        const int place = places_[unknown] % (2 * n);
+        const double entry = unit * block[r * 2 * n + place];
+        growth_ = std::max(growth_, std::abs(entry * scale_[place]));
+        jacobian(row + r, unknown) = entry * weights_[unknown];
       }
       const int next = row + n + r;
       if (i + 1 < knots.segments) jacobian(row + r, next) = -weights_[next] / scale_[r];

@@ -1,10 +1,10 @@
 // The equations of multiple shooting along a line of problems, F(u, s) = 0, with derivatives.
 //
-// The unknowns are x = (u, s). u holds p(0) and the phase points at the inner knots, each divided
-// by its scale. |u|^2 is a mean over the knots, so that arclength does not depend on how many there
-// are. F_u is made of tangent flows, which are exact for the discrete map. F_s is exact where only
-// the target moves. Elsewhere it is the derivative of the polynomial through five values of F near
-// s.
+// The unknowns are x = (u, s). u holds the unknowns of the start (ends.h), which are p(0) where
+// none of it is free, and the phase points at the inner knots, each divided by its scale. |u|^2 is
+// a mean over the knots, so that arclength does not depend on how many there are. F_u is made of
+// tangent flows, which are exact for the discrete map. F_s is exact where only the target moves.
+// Elsewhere it is the derivative of the polynomial through five values of F near s.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,7 +27,8 @@ class LineEquations {
   // The knots of x, the last row completed by a flow where that succeeds.
   [[nodiscard]] Knots knots(const Eigen::VectorXd& x) const;
 
-  // (p(0), s) of x, or of a rate of x; and an x that has them and is zero elsewhere.
+  // The unknowns of the start and s of x, or of a rate of x; and an x that has them and is zero
+  // elsewhere.
   [[nodiscard]] Eigen::VectorXd head(const Eigen::VectorXd& x) const;
   [[nodiscard]] Eigen::VectorXd from_head(const Eigen::VectorXd& head) const;
   // Whether the momenta of x are still of the size of their scale.
@@ -52,7 +53,9 @@ class LineEquations {
   Knots reference_;
   long steps_;
   int size_;
+  std::vector<int> places_;  // of the unknowns among the knots
   Eigen::VectorXd weights_;  // what one unit of u is
+  Eigen::VectorXd rows_;     // and one unit of F
   std::vector<double> scale_;
   double growth_ = 0;
 };

@@ -5,6 +5,7 @@
 
 #include "carnot/shooting/extremal/conjugate_times.h"
 #include "carnot/shooting/path/path.h"
+#include "carnot/shooting/problem/ends.h"
 #include "carnot/shooting/shoot/end_point.h"
 #include "carnot/shooting/shoot/survey.h"
 
@@ -17,8 +18,7 @@ double doubt_of(const BoundaryValueProblem& problem, const Geodesic& geodesic) {
   constexpr double kLeast = 1e-8;
   constexpr double kMargin = 100;
   if (geodesic.verification == Verification::kKnots) return kLeast;
-  const double distance = largest_difference(
-      problem.from.data(), problem.to.data(), static_cast<int>(problem.from.size()));
+  const double distance = distance_between_ends(problem);
   return distance > 0 ? std::max(kLeast, kMargin * geodesic.endpoint_error / distance) : kLeast;
 }
 
@@ -54,16 +54,17 @@ std::optional<int> family_dimension(const BoundaryValueProblem& problem,
   constexpr double kStep = 1e-3;  // relative to p0
   constexpr double kTolerance = 1e-10;
   const long steps = geodesic.plan.count / 2;
-  std::vector<double> z;
-  const auto tangent = end_point_tangent(problem, geodesic.p0, problem.time, steps, z);
+  std::vector<double> z = geodesic.from;
+  z.insert(z.end(), geodesic.p0.begin(), geodesic.p0.end());
+  const std::vector<double> x = start_unknowns(problem, z.data());
+  const auto tangent = end_point_tangent(problem, x, problem.time, steps, z);
   if (!tangent) return std::nullopt;
-  const Units units(problem, geodesic.p0.data());
+  const Units units(problem, x);
   const Eigen::MatrixXd kernel = kernel_of(units, *tangent, 1e-8);
   if (kernel.cols() != conjugate + corank) return std::nullopt;
   const auto n = static_cast<Eigen::Index>(geodesic.p0.size());
-  const Eigen::Map<const Eigen::VectorXd> p(geodesic.p0.data(), n);
-  const double distance = largest_difference(
-      problem.from.data(), problem.to.data(), static_cast<int>(problem.from.size()));
+  const Eigen::Map<const Eigen::VectorXd> p(x.data(), n);
+  const double distance = distance_between_ends(problem);
   const double part = kTolerance * std::min(1.0, distance);
   int moved = 0;
   for (Eigen::Index j = 0; j < kernel.cols(); ++j) {
@@ -107,23 +108,27 @@ void set_label(const BoundaryValueProblem& problem,
                Geodesic& geodesic) {
   if (conjugate.corank) geodesic.abnormal = *conjugate.corank > problem.dynamics.forced;
   if (!conjugate.known) return;
+  // Where the target is free it is not T as a conjugate time that counts, but what moving the
+  // target does to the action.
+  const int degenerate = conjugate.target ? conjugate.target->nullity : conjugate.at_end;
   const auto inner = static_cast<int>(conjugate.times.size()) - conjugate.at_end;
-  geodesic.morse_index = inner;
+  const int index = inner + (conjugate.target ? conjugate.target->index : 0);
+  geodesic.morse_index = index;
   geodesic.family_dimension = 0;
-  if (conjugate.at_end > 0) {
+  if (degenerate > 0) {
     geodesic.family_dimension.reset();
     if (geodesic.verification == Verification::kSingle) {
       geodesic.family_dimension =
-          family_dimension(problem, geodesic, conjugate.at_end, *conjugate.corank);
+          family_dimension(problem, geodesic, degenerate, *conjugate.corank);
     }
   }
   if (geodesic.family_dimension.value_or(0) > 0) {
     geodesic.label = Label::kSingular;
-  } else if (inner > 0) {
+  } else if (index > 0) {
     // On an abnormal extremal the index depends on the multipliers: a minimum may be conjugate with
     // some of them (Agrachev & Sachkov, Control Theory from the Geometric Viewpoint, 2004, ch. 20).
     if (!geodesic.abnormal.value_or(false)) geodesic.label = Label::kConjugatePassed;
-  } else if (conjugate.times.empty()) {
+  } else if (degenerate == 0) {
     geodesic.label = Label::kLocallyMinimal;
   }
 }

@@ -10,12 +10,14 @@
 #include "carnot/shooting/linear/dense.h"
 #include "carnot/shooting/linear/lagrangian_plane.h"
 #include "carnot/shooting/linear/round_off.h"
+#include "carnot/shooting/problem/ends.h"
 #include "carnot/shooting/problem/units.h"
 
 namespace carnot::internal {
 namespace {
 
 using Eigen::MatrixXd;
+using Eigen::VectorXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr double kTurn = 2 * std::numbers::pi;
@@ -73,6 +75,10 @@ class Planes {
   // Whether a phase is so near to zero that round-off may have put it on the wrong side.
   [[nodiscard]] bool ambiguous(const Frame& frame) const { return near_zero(frame, doubt_) > 0; }
   [[nodiscard]] double doubt() const { return doubt_; }
+  // Of the plane of a frame, with rows in the units of the scene; see conjugate_times.h.
+  [[nodiscard]] TargetForm form_at(const Frame& frame,
+                                   const BoundaryValueProblem& problem,
+                                   double tolerance) const;
 
   // The time in (a.t, t] at which the count first exceeds `target`, by bisection.
   [[nodiscard]] double locate(const Frame& a, double t, double target) const {
@@ -120,11 +126,50 @@ class Planes {
   double doubt_;
 };
 
-Frame vertical(const Knots& knots) {
+TargetForm Planes::form_at(const Frame& frame,
+                           const BoundaryValueProblem& problem,
+                           double tolerance) const {
+  const int n = dynamics_.dof;
+  MatrixXd x = product(s_, frame.plane.topRows(n));
+  MatrixXd p = product(inverse_, frame.plane.bottomRows(n));
+  x /= x.norm();
+  p /= p.norm();
+  MatrixXd conditions(n, n);
+  MatrixXd fixed = MatrixXd::Zero(n, n);  // a row of zeros for each free coordinate
+  std::vector<int> free;
+  for (int j = 0; j < n; ++j) {
+    conditions.row(j) = problem.is_free_to(j) ? p.row(j) : x.row(j);
+    if (problem.is_free_to(j)) free.push_back(j);
+    if (!problem.is_free_to(j)) fixed.row(j) = x.row(j);
+  }
+  const auto vanish = [&](const VectorXd& values) {
+    return static_cast<int>((values.array() <= tolerance).count());
+  };
+  TargetForm form;
+  form.nullity = vanish(right_singular(conditions).values);
+  const RightSingular still = right_singular(fixed);
+  const MatrixXd kept = still.vectors.rightCols(vanish(still.values));
+  MatrixXd moves(static_cast<int>(free.size()), kept.cols());
+  MatrixXd pulls = moves;
+  for (std::size_t j = 0; j < free.size(); ++j) {
+    moves.row(static_cast<int>(j)) = x.row(free[j]) * kept;
+    pulls.row(static_cast<int>(j)) = p.row(free[j]) * kept;
+  }
+  const MatrixXd q = transposed_product(moves, pulls);
+  const VectorXd values = symmetric_eigen(0.5 * (q + q.transpose())).values;
+  form.index = static_cast<int>((values.array() < -tolerance).count());
+  const auto reached = right_singular(moves.transpose()).values;
+  form.index += vanish(reached);
+  return form;
+}
+
+// The plane of the start: vertical, but for what is free there.
+Frame first_frame(const BoundaryValueProblem& problem, const Knots& knots) {
   const int n = knots.dof;
   Frame frame{0, {knots.at(0), knots.at(0) + 2 * n}, MatrixXd::Zero(2 * n, n), 0, {}};
-  frame.plane.bottomRows(n).setIdentity();
+  for (int j = 0; j < n; ++j) frame.plane(start_index(problem, j), j) = 1;
   frame.phases = phases_of(frame.plane);
+  for (const double angle : frame.phases.angles) frame.phi += angle < 0 ? angle + kTurn : angle;
   return frame;
 }
 
@@ -143,7 +188,7 @@ std::optional<Graph> typical_graph(double begin,
   const double first = begin * problem.time;
   const long count = std::max(2L, std::lround(steps * piece / problem.time));
   const double h = piece / static_cast<double>(count);
-  MatrixXd plane = vertical(knots).plane;
+  MatrixXd plane = first_frame(problem, knots).plane;
   std::vector<Graph> graphs;
   for (int i = 0; i < last; ++i) {
     std::vector<double> z(knots.at(i), knots.at(i) + 2 * n);
@@ -212,7 +257,7 @@ ConjugateTimes follow(double fraction,
   result.corank = graph->kernel;
   if (graph->kernel == n) return result;
   const Planes planes(problem.dynamics, units, graph->balance, graph->kernel, options.precision);
-  Frame frame = vertical(knots);
+  Frame frame = first_frame(problem, knots);
   Frame clear = frame;  // the last frame whose count is beyond doubt
   int counted = 0;
   const auto count_to = [&](int count, const Frame& until) {
@@ -242,6 +287,10 @@ ConjugateTimes follow(double fraction,
   if (!count_to(static_cast<int>(std::lround(planes.count(frame, tolerance))), frame))
     return result;
   result.times.insert(result.times.end(), result.at_end, problem.time);
+  if (std::find(problem.free_to.begin(), problem.free_to.end(), true) != problem.free_to.end()) {
+    if (graph->kernel > 0) return result;  // not all movements of the target are possible then
+    result.target = planes.form_at(frame, problem, std::max(options.doubt, planes.doubt()));
+  }
   result.known = true;
   return result;
 }
@@ -256,7 +305,7 @@ ConjugateTimes conjugate_times(const BoundaryValueProblem& problem,
   // another balance, must agree.
   constexpr int kDoublings = 4;
   constexpr std::array kFractions{0.43, 0.31};
-  const Units units(problem, knots.at(0) + knots.dof);
+  const Units units(problem, start_unknowns(problem, knots.at(0)));
   ConjugateTimes coarse = follow(kFractions[0], problem, units, knots, steps, options);
   for (int i = 0; i < kDoublings; ++i) {
     steps *= 2;

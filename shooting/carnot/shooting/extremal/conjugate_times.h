@@ -12,6 +12,15 @@
 // flow carries the plane from step to step, and its basis is made orthonormal again each time, so
 // that growth of the tangents costs no digits. Source: Arnold, Mathematical Methods of Classical
 // Mechanics, appendix 11 (Maslov index).
+//
+// Where coordinates of the start are free, (X, P) are the derivatives by the unknowns x of ends.h.
+// The plane starts with dq_j in the place of dp_j, and the times are focal times. Where coordinates
+// E of the target are free, its movements count, too. The action of the extremals nearby has the
+// second derivatives P X^-1 by the target. So on combinations a of the columns that leave the fixed
+// coordinates alone, the index grows by that of the form (X a)_E.(P a)_E. It grows by one for each
+// dimension of E that no such combination reaches, too: T is conjugate with a momentum along it.
+// The extremal is degenerate where some a leaves the fixed coordinates and the free momenta alone
+// (Agrachev & Sachkov, Control Theory from the Geometric Viewpoint, 2004, ch. 21).
 #pragma once
 
 #include <optional>
@@ -22,11 +31,18 @@
 
 namespace carnot::internal {
 
+// What moving the free coordinates of the target adds.
+struct TargetForm {
+  int index = 0;
+  int nullity = 0;
+};
+
 struct ConjugateTimes {
-  bool known = false;         // false where round-off hides the count
-  std::vector<double> times;  // in (0, T], ascending, repeated by multiplicity
-  int at_end = 0;             // how many of them are T
-  std::optional<int> corank;  // n - the generic rank of X; > 0: abnormal
+  bool known = false;                // false where round-off hides the count
+  std::vector<double> times;         // in (0, T], ascending, repeated by multiplicity
+  int at_end = 0;                    // how many of them are T
+  std::optional<int> corank;         // n - the generic rank of X; > 0: abnormal
+  std::optional<TargetForm> target;  // where coordinates of the target are free
 };
 
 struct ConjugateTimesOptions {

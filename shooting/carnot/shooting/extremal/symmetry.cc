@@ -25,28 +25,48 @@ std::vector<double> linear(const Symmetries& of, const ProblemSymmetry& s, const
   return y;
 }
 
+// Whether the ends say by what motion of the plane one is mapped to the other. Where x, y or the
+// angle that tells the turn is free they do not, and only maps without a motion are looked for.
+bool tells_motion(const BoundaryValueProblem& problem) {
+  const Symmetries& of = problem.dynamics.info.symmetries;
+  std::vector<int> telling;
+  if (of.x >= 0) telling = {of.x, of.y};
+  if (!of.angles.empty()) telling.push_back(of.angles.front());
+  return std::none_of(telling.begin(), telling.end(), [&](int j) {
+    return problem.is_free_from(j) || problem.is_free_to(j);
+  });
+}
+
 // Completes mirror and reversal to a map of `from` to the image of `from`; false when `to` is then
 // not mapped to the image of `to`.
 bool complete_map(const BoundaryValueProblem& problem, ProblemSymmetry& s) {
   const Symmetries& of = problem.dynamics.info.symmetries;
   const std::vector<double>& image_from = s.reverses ? problem.to : problem.from;
   const std::vector<double>& image_to = s.reverses ? problem.from : problem.to;
+  const bool moved = tells_motion(problem);
   s.shift.assign(problem.from.size(), 0.0);
-  if (!of.angles.empty()) {
+  if (moved && !of.angles.empty()) {
     const int j = of.angles.front();
     s.turn = image_from[j] - s.mirror[j] * problem.from[j];
   }
   for (const int j : of.angles) s.shift[j] = s.turn;
   const std::vector<double> first = linear(of, s, problem.from.data());
-  if (of.x >= 0) {
+  if (moved && of.x >= 0) {
     s.shift[of.x] = image_from[of.x] - first[of.x];
     s.shift[of.y] = image_from[of.y] - first[of.y];
   }
   const std::vector<double> second = linear(of, s, problem.to.data());
   for (std::size_t j = 0; j < first.size(); ++j) {
     const double size = 1 + std::abs(image_from[j]) + std::abs(image_to[j]);
-    if (std::abs(first[j] + s.shift[j] - image_from[j]) > kSymmetryRoundOff * size) return false;
-    if (std::abs(second[j] + s.shift[j] - image_to[j]) > kSymmetryRoundOff * size) return false;
+    const auto apart = [&](double a, double b) {
+      return std::abs(a + s.shift[j] - b) > kSymmetryRoundOff * size;
+    };
+    const int k = static_cast<int>(j);
+    const bool free_from = problem.is_free_from(k);
+    const bool free_to = problem.is_free_to(k);
+    if (s.reverses && free_from != free_to) return false;
+    if (!free_from && apart(first[j], image_from[j])) return false;
+    if (!free_to && apart(second[j], image_to[j])) return false;
   }
   return true;
 }

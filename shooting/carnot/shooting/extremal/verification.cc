@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "carnot/shooting/linear/round_off.h"
+#include "carnot/shooting/problem/ends.h"
 #include "carnot/shooting/problem/manifold.h"
 #include "carnot/shooting/shoot/end_point.h"
 #include "carnot/shooting/shoot/multiple_shooting.h"
@@ -34,13 +35,15 @@ bool magnifies(const BoundaryValueProblem& problem,
                double tolerance) {
   constexpr double kShare = 1e-2;  // of the tolerance
   std::vector<double> z;
-  const auto tangent = end_point_tangent(problem, knots.p0(), problem.time, steps, z);
+  const auto tangent =
+      end_point_tangent(problem, start_unknowns(problem, knots.at(0)), problem.time, steps, z);
   return !tangent || !(round_off(knots, tangent->norm()) < kShare * tolerance);
 }
 
-// max-norm of flow(z_i) - z_{i+1} and, last, of q(T) - to. Infinite when a flow fails.
+// max-norm of flow(z_i) - z_{i+1} and, last, of what misses the target. Infinite when a flow fails.
 double knot_defect(const BoundaryValueProblem& problem, const Knots& knots, long steps) {
   const int n = knots.dof;
+  const double unit = length_per_momentum(problem, knots.at(0) + n);
   double defect = 0;
   for (int i = 0; i < knots.segments; ++i) {
     std::vector<double> z(knots.at(i), knots.at(i) + 2 * n);
@@ -50,7 +53,7 @@ double knot_defect(const BoundaryValueProblem& problem, const Knots& knots, long
     }
     const bool last = i + 1 == knots.segments;
     defect = std::max(defect,
-                      last ? largest_difference(z.data(), problem.to.data(), n)
+                      last ? miss(problem, z.data(), unit)
                            : largest_difference(z.data(), knots.at(i + 1), 2 * n));
   }
   return defect;
@@ -93,31 +96,30 @@ struct Demand {
 Demand demand_of(const BoundaryValueProblem& problem, double tolerance) {
   constexpr double kFiner = 1e-3;  // the aim over the tolerance
   constexpr double kPart = 1e-3;   // of the distance: a path that misses by more goes elsewhere
-  const double distance =
-      largest_difference(problem.from.data(), problem.to.data(), problem.dynamics.dof);
+  const double distance = distance_between_ends(problem);
   if (!(distance > 0)) return {kFiner * tolerance, tolerance};
   return {kFiner * tolerance * std::min(1.0, distance), std::min(tolerance, kPart * distance)};
 }
 
-// From p(0) alone. False where a flow of twice as many steps does not arrive.
+// From the start alone. False where a flow of twice as many steps does not arrive.
 bool check_single(const BoundaryValueProblem& problem,
                   const Demand& demand,
                   long steps,
-                  std::vector<double> p0,
+                  std::vector<double> x,
                   Extremal& extremal) {
   Eigen::MatrixXd tangent;
-  if (!(correct(problem, steps, demand.aim, p0, tangent) <= demand.allowed)) return false;
-  reduce(problem, steps, demand.aim, p0, tangent);
+  if (!(correct(problem, steps, demand.aim, x, tangent) <= demand.allowed)) return false;
+  reduce(problem, steps, demand.aim, x, tangent);
   // Momenta along the rows of Dh move nothing where holonomic constraints need forces.
-  const auto kernel = kernel_of(Units(problem, p0.data()), tangent).cols();
-  if (problem.dynamics.forced > 0) (void)bring_to_manifold(problem, p0);
-  const Knots knots = knots_of(problem, p0, 1, 2 * steps);
-  const double error = largest_difference(knots.at(1), problem.to.data(), problem.dynamics.dof);
-  if (!(error <= demand.allowed)) return false;
+  const auto kernel = kernel_of(Units(problem, x), tangent).cols();
+  if (problem.dynamics.forced > 0) (void)bring_to_manifold(problem, x);
+  const Knots knots = knots_of(problem, x, 1, 2 * steps);
+  const double unit = length_per_momentum(problem, knots.at(0) + knots.dof);
+  if (!(miss(problem, knots.at(1), unit) <= demand.allowed)) return false;
   extremal.singular = kernel > problem.dynamics.forced;
   extremal.knots = knots;
   extremal.geodesic.verification = Verification::kSingle;
-  extremal.geodesic.endpoint_error = error;
+  extremal.geodesic.endpoint_error = endpoint_error(problem, knots.at(1));
   return true;
 }
 
@@ -149,9 +151,16 @@ bool measure(const BoundaryValueProblem& problem, long steps, Extremal& extremal
   if (!measured.completed()) return false;
   std::vector<double> velocity(problem.dynamics.dof);
   Geodesic& geodesic = extremal.geodesic;
-  geodesic.p0 = extremal.knots.p0();
+  const Knots& knots = extremal.knots;
+  geodesic.from.assign(knots.at(0), knots.at(0) + knots.dof);
+  geodesic.to = problem.to;
+  for (int j = 0; j < knots.dof; ++j) {
+    if (problem.is_free_to(j)) geodesic.to[j] = knots.at(knots.segments)[j];
+  }
+  geodesic.transversality_error = transversality_error(problem, knots.at(knots.segments));
+  geodesic.p0 = knots.p0();
   geodesic.lambda0.assign(problem.dynamics.multipliers, 0.0);
-  problem.dynamics.evaluate(0, problem.from, geodesic.p0, velocity, geodesic.lambda0);
+  problem.dynamics.evaluate(0, geodesic.from, geodesic.p0, velocity, geodesic.lambda0);
   geodesic.action = measured.action;
   if (std::isfinite(measured.length)) geodesic.length = measured.length;
   geodesic.constraint_error = measured.constraint_error;
@@ -167,7 +176,7 @@ Outcome verify(const BoundaryValueProblem& problem, Knots knots, long steps, dou
   const Demand demand = demand_of(problem, tolerance);
   steps = enough_steps(problem, knots, steps, tolerance);
   Extremal extremal;
-  if (!check_single(problem, demand, steps, knots.p0(), extremal)) {
+  if (!check_single(problem, demand, steps, start_unknowns(problem, knots.at(0)), extremal)) {
     const Reason reason =
         check_knots(problem, demand, steps, tolerance, std::move(knots), extremal);
     if (reason != Reason::kNone) return {std::nullopt, reason};

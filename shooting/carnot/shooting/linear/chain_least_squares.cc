@@ -10,20 +10,63 @@
 namespace carnot::internal {
 namespace {
 
+// Which numbers of a chain are unknown: those of the inner nodes, and what is free of the ends.
+class ChainEnds {
+ public:
+  ChainEnds(const ChainOptions& options, int n, int intervals)
+      : inner_((intervals - 1) * n), n_(n) {
+    for (int j = 0; j < n; ++j) {
+      if (!options.free_first.empty() && options.free_first[j]) first_.push_back(j);
+      if (!options.free_last.empty() && options.free_last[j]) last_.push_back(n + inner_ + j);
+    }
+  }
+
+  [[nodiscard]] bool free() const { return !first_.empty() || !last_.empty(); }
+  [[nodiscard]] int first() const { return static_cast<int>(first_.size()); }
+  [[nodiscard]] int size() const { return first() + inner_ + static_cast<int>(last_.size()); }
+  // Where unknown `j` stands in the chain,
+  [[nodiscard]] int place(int j) const {
+    if (j < first()) return first_[j];
+    j -= first();
+    return j < inner_ ? n_ + j : last_[j - inner_];
+  }
+  // and which unknown stands at `place`; -1: none.
+  [[nodiscard]] int unknown(int place) const {
+    if (place >= n_ && place < n_ + inner_) return first() + place - n_;
+    const std::vector<int>& end = place < n_ ? first_ : last_;
+    const auto found = std::find(end.begin(), end.end(), place);
+    if (found == end.end()) return -1;
+    return static_cast<int>(found - end.begin()) + (place < n_ ? 0 : first() + inner_);
+  }
+
+ private:
+  std::vector<int> first_;
+  std::vector<int> last_;
+  int inner_;
+  int n_;
+};
+
 // |r|^2 / 2 along a chain, its gradient J'r and J'J.
 class Chain {
  public:
-  Chain(const ChainResiduals& residuals_of, int residuals, int n, std::size_t nodes)
+  Chain(const ChainResiduals& residuals_of,
+        int residuals,
+        int n,
+        const ChainOptions& options,
+        std::size_t nodes)
       : residuals_of_(residuals_of),
         n_(n),
         intervals_(static_cast<int>(nodes) - 1),
-        size_((intervals_ - 1) * n),
+        ends_(options, n, intervals_),
+        size_(ends_.size()),
         normal_(size_, 2 * n - 1),
         gradient_(size_),
         r_(residuals),
         jacobian_(r_.size() * 2 * n) {}
 
   [[nodiscard]] int size() const { return size_; }
+  // Where unknown `j` stands in x.
+  [[nodiscard]] int place(int j) const { return ends_.place(j); }
 
   // Infinite where there are no residuals.
   [[nodiscard]] double cost(const std::vector<double>& x) {
@@ -59,7 +102,8 @@ class Chain {
   void add(int i) {
     const int first = i == 0 ? n_ : 0;  // of its 2n arguments that are free
     const int last = i + 1 == intervals_ ? n_ : 2 * n_;
-    const int shift = (i - 1) * n_;
+    const int shift = ends_.first() + (i - 1) * n_;
+    if (ends_.free() && (i == 0 || i + 1 == intervals_)) return add_beside_end(i);
     for (std::size_t r = 0; r < r_.size(); ++r) {
       const double* row = &jacobian_[r * 2 * n_];
       for (int a = first; a < last; ++a) {
@@ -70,9 +114,26 @@ class Chain {
     }
   }
 
+  // The same where a node may be free in part.
+  void add_beside_end(int i) {
+    for (std::size_t r = 0; r < r_.size(); ++r) {
+      const double* row = &jacobian_[r * 2 * n_];
+      for (int a = 0; a < 2 * n_; ++a) {
+        const int at = ends_.unknown(i * n_ + a);
+        if (at < 0) continue;
+        gradient_[at] += row[a] * r_[r];
+        for (int b = a; b < 2 * n_; ++b) {
+          const int other = ends_.unknown(i * n_ + b);
+          if (other >= 0) normal_(at, other) += row[a] * row[b];
+        }
+      }
+    }
+  }
+
   const ChainResiduals& residuals_of_;
   int n_;
   int intervals_;
+  ChainEnds ends_;
   int size_;
   BandedCholesky normal_;
   std::vector<double> gradient_;
@@ -145,7 +206,7 @@ int minimise_chain(const ChainResiduals& residuals_of,
                    const ChainOptions& options,
                    std::vector<double>& x) {
   constexpr double kLeastRatio = 1e-3;  // of true to predicted gain
-  Chain chain(residuals_of, residuals, n, x.size() / n);
+  Chain chain(residuals_of, residuals, n, options, x.size() / n);
   double cost = chain.linearise(x);
   if (chain.size() == 0 || !std::isfinite(cost)) return 0;
   const std::vector<double> unit2 = units2(chain);
@@ -162,9 +223,14 @@ int minimise_chain(const ChainResiduals& residuals_of,
       region.reject();
       continue;
     }
-    for (int j = 0; j < chain.size(); ++j) trial[n + j] = x[n + j] + step[j];
+    double size = 0;
+    for (int j = 0; j < chain.size(); ++j) {
+      const int at = chain.place(j);
+      trial[at] = x[at] + step[j];
+      size += x[at] * x[at];
+    }
     const double gain = cost - chain.cost(trial);
-    const double size = norm({&x[n], step.size()}) + options.step_tolerance;
+    size = std::sqrt(size) + options.step_tolerance;
     done = std::abs(gain) <= options.function_tolerance * cost ||
            norm(step) <= options.step_tolerance * size;
     if (!(gain > kLeastRatio * predicted)) {

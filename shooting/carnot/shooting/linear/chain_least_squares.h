@@ -18,6 +18,9 @@ struct ChainOptions {
   double function_tolerance = 1e-4;  // gain relative to the cost,
   double step_tolerance = 1e-6;      // and step relative to the nodes, at which to stop
   double gradient_tolerance = 1e-8;
+  // Which numbers of the first and of the last node may move; empty: none.
+  std::vector<bool> free_first;
+  std::vector<bool> free_last;
 };
 
 // Residuals i at (x_i, x_{i+1}), 2n numbers, and unless null their Jacobian, `residuals` x 2n
@@ -25,8 +28,9 @@ struct ChainOptions {
 using ChainResiduals =
     std::function<bool(int i, const double* x, double* residual, double* jacobian)>;
 
-// Improves the inner nodes of `x`, (intervals + 1) x n row-major; the end nodes stay fixed. Returns
-// the number of iterations; 0 where there is nothing to improve, or no residuals to start with.
+// Improves the inner nodes of `x`, (intervals + 1) x n row-major, and what is free of the end
+// nodes. Returns the number of iterations; 0 where there is nothing to improve, or no residuals to
+// start with.
 int minimise_chain(const ChainResiduals& residuals_of,
                    int residuals,
                    int n,

@@ -25,7 +25,9 @@ class Reduction {
         h_(problem.time / path.intervals),
         terms_(problem.dynamics),
         hessian_(static_cast<std::size_t>(intervals_) * 3 * n_ * n_),
-        matrix_(size(), 3 * n_ - 1),
+        unknown_(static_cast<std::size_t>(intervals_ + 1) * n_, -1),
+        size_(number_unknowns()),
+        matrix_(size_, 3 * n_ - 1),
         weights_(n_, 0.0) {}
 
   ActionDescent run();
@@ -40,12 +42,11 @@ class Reduction {
     std::vector<double> by_q;    // H_q
   };
 
-  [[nodiscard]] int size() const { return intervals_ * n_ + (intervals_ - 1) * n_; }
-  // Unknowns are ordered s_0, q_1, s_1, q_2, ..., s_{N-1}.
-  [[nodiscard]] int momentum_at(int i) const { return 2 * i * n_; }
-  [[nodiscard]] int node_at(int i) const {
-    return i == 0 || i == intervals_ ? -1 : (2 * i - 1) * n_;
-  }
+  // Unknowns are ordered q_0, s_0, q_1, s_1, q_2, ..., s_{N-1}, q_N; of the ends what is free.
+  int number_unknowns();
+  [[nodiscard]] int momentum_at(int i) const { return first_ + 2 * i * n_; }
+  // Coordinate j of node i; -1 where it is fixed.
+  [[nodiscard]] int node_at(int i, int j) const { return unknown_[i * n_ + j]; }
   [[nodiscard]] double centre(int i, int j) const {
     return options_.centre.empty() ? 0.0 : options_.centre[i * n_ + j];
   }
@@ -81,6 +82,9 @@ class Reduction {
   State state_;
   State trial_;
   std::vector<double> hessian_;  // qq, qp, pp of each interval
+  int first_ = 0;                // how many coordinates of q_0 are free
+  std::vector<int> unknown_;     // of the nodes
+  int size_;
   BandedLdlt matrix_;
   std::vector<double> weights_;  // nu
   double shift_ = 0;
@@ -96,6 +100,20 @@ constexpr double kFirstShift = 1e-2;
 constexpr double kLeastShift = 1e-6;
 constexpr double kDown = 1.0 / 4;
 constexpr double kUp = 8;
+
+int Reduction::number_unknowns() {
+  int next = 0;
+  for (int i = 0; i <= intervals_; ++i) {
+    for (int j = 0; j < n_; ++j) {
+      const bool fixed =
+          (i == 0 && !problem_.is_free_from(j)) || (i == intervals_ && !problem_.is_free_to(j));
+      if (!fixed) unknown_[i * n_ + j] = next++;
+    }
+    if (i == 0) first_ = next;
+    if (i < intervals_) next += n_;
+  }
+  return next;
+}
 
 bool Reduction::evaluate(State& state, bool second) {
   state.defect.resize(intervals_ * n_);
@@ -156,27 +174,41 @@ double Reduction::merit(const State& state) const {
 }
 
 std::vector<double> Reduction::gradient(const State& state) const {
-  std::vector<double> g(size(), 0.0);
+  std::vector<double> g(size_, 0.0);
   for (int i = 0; i < intervals_; ++i) {
-    const int left = node_at(i);
-    const int right = node_at(i + 1);
     for (int j = 0; j < n_; ++j) {
+      const int left = node_at(i, j);
+      const int right = node_at(i + 1, j);
       const double s = state.path.lambda[i * n_ + j];
       const double force = 0.5 * h_ * state.by_q[i * n_ + j];
       g[momentum_at(i) + j] = h_ * state.defect[i * n_ + j];
-      if (left >= 0) g[left + j] += -s - force;
-      if (right >= 0) g[right + j] += s - force;
+      if (left >= 0) g[left] += -s - force;
+      if (right >= 0) g[right] += s - force;
     }
   }
   return g;
 }
 
 double Reduction::residual(const State& state) const {
+  // A coordinate that is free at both ends may keep still and have no momentum at all. It is
+  // measured by the others.
+  constexpr double kLeast = 1e-3;
   const std::vector<double> g = gradient(state);
+  double common_way = 0;
+  double common_momentum = 0;
+  for (int i = 0; i < intervals_ && problem_.has_free_ends(); ++i) {
+    for (int j = 0; j < n_; ++j) {
+      const double root = std::sqrt(options_.sizes[j]);
+      const double step = state.path.configuration(i + 1)[j] - state.path.configuration(i)[j];
+      common_way = std::max(common_way, kLeast * std::abs(step) / root);
+      common_momentum =
+          std::max(common_momentum, kLeast * std::abs(state.path.lambda[i * n_ + j]) * root);
+    }
+  }
   double worst = 0;
   for (int j = 0; j < n_; ++j) {
-    double way = 0;
-    double momentum = 0;
+    double way = common_way * std::sqrt(options_.sizes[j]);
+    double momentum = common_momentum / std::sqrt(options_.sizes[j]);
     double defect = 0;
     double force = 0;
     for (int i = 0; i < intervals_; ++i) {
@@ -184,7 +216,9 @@ double Reduction::residual(const State& state) const {
       way = std::max(way, std::abs(step));
       momentum = std::max(momentum, std::abs(state.path.lambda[i * n_ + j]));
       defect = std::max(defect, std::abs(g[momentum_at(i) + j]));
-      if (i > 0) force = std::max(force, std::abs(g[node_at(i) + j]));
+    }
+    for (int i = 0; i <= intervals_; ++i) {
+      if (node_at(i, j) >= 0) force = std::max(force, std::abs(g[node_at(i, j)]));
     }
     if (defect > 0) worst = std::max(worst, defect / std::max(way, 1e-300));
     if (force > 0) worst = std::max(worst, force / std::max(momentum, 1e-300));
@@ -202,25 +236,22 @@ void Reduction::assemble(double shift) {
     const double* qp = qq + n_ * n_;
     const double* pp = qp + n_ * n_;
     const int s = momentum_at(i);
-    const int left = node_at(i);
-    const int right = node_at(i + 1);
     for (int a = 0; a < n_; ++a) {
+      const int left = node_at(i, a);
+      const int right = node_at(i + 1, a);
       for (int b = 0; b < n_; ++b) {
         const double by_nodes = -0.25 * h_ * qq[a * n_ + b];
         const double mixed = -0.5 * h_ * qp[a * n_ + b];
         const double same = a == b ? 1 : 0;
-        if (left >= 0) {
-          add(left + a, left + b, by_nodes);
-          add(left + a, s + b, mixed - same);
-          if (right >= 0) add(left + a, right + b, by_nodes);
-        }
-        if (right >= 0) {
-          add(right + a, right + b, by_nodes);
-          add(s + b, right + a, mixed + same);
-        }
+        add(left, node_at(i, b), by_nodes);
+        add(left, s + b, mixed - same);
+        add(left, node_at(i + 1, b), by_nodes);
+        add(right, node_at(i + 1, b), by_nodes);
+        add(s + b, right, mixed + same);
         add(s + a, s + b, -h_ * (pp[a * n_ + b] + same * kRegularised * options_.sizes[a]));
       }
-      if (right >= 0) add(right + a, right + a, shift * h_ * stiffness(a));
+      if (i == 0) add(left, left, shift * h_ * stiffness(a));
+      add(right, right, shift * h_ * stiffness(a));
     }
   }
 }
@@ -264,10 +295,10 @@ double Reduction::slope(const std::vector<double>& step) const {
     const double* block = &hessian_[static_cast<std::size_t>(i) * 3 * n_ * n_];
     const double* qp = block + n_ * n_;
     const double* pp = qp + n_ * n_;
-    const int left = node_at(i);
-    const int right = node_at(i + 1);
     for (int j = 0; j < n_; ++j) {
-      dq[j] = 0.5 * ((left >= 0 ? step[left + j] : 0) + (right >= 0 ? step[right + j] : 0));
+      const int left = node_at(i, j);
+      const int right = node_at(i + 1, j);
+      dq[j] = 0.5 * ((left >= 0 ? step[left] : 0) + (right >= 0 ? step[right] : 0));
     }
     for (int a = 0; a < n_; ++a) {
       double rate = 0;  // of the change of H_p
@@ -300,10 +331,10 @@ void Reduction::move(const State& from,
                      double by,
                      State& to) const {
   to.path = from.path;
-  for (int i = 0; i < intervals_; ++i) {
+  for (int i = 0; i <= intervals_; ++i) {
     for (int j = 0; j < n_; ++j) {
-      to.path.lambda[i * n_ + j] += by * step[momentum_at(i) + j];
-      if (i > 0) to.path.configuration(i)[j] += by * step[node_at(i) + j];
+      if (i < intervals_) to.path.lambda[i * n_ + j] += by * step[momentum_at(i) + j];
+      if (node_at(i, j) >= 0) to.path.configuration(i)[j] += by * step[node_at(i, j)];
     }
   }
 }
@@ -326,7 +357,7 @@ bool Reduction::advance(const std::vector<double>& step, ActionDescent& result) 
     move(state_, step, by, trial_);
     if (pays(by)) return true;
     if (by < 1 || !trial_.exists || result.left_chart) continue;
-    std::vector<double> correction(size(), 0.0);
+    std::vector<double> correction(size_, 0.0);
     for (int i = 0; i < intervals_; ++i) {
       for (int j = 0; j < n_; ++j) {
         correction[momentum_at(i) + j] = -h_ * trial_.defect[i * n_ + j];

@@ -48,8 +48,8 @@ struct ActionDescent {
   double residual = 0;  // as the tolerance
 };
 
-// Moves the inner nodes of `path` and its momenta, path.lambda. Sets path.lambda to the momenta
-// that suit the velocities first where it is empty.
+// Moves the inner nodes of `path`, what is free of its ends, and its momenta, path.lambda. Where
+// that is empty, it is first set to the momenta that suit the velocities.
 ActionDescent reduce_action(const BoundaryValueProblem& problem,
                             const ActionDescentOptions& options,
                             Path& path);

@@ -22,7 +22,7 @@ class Descent {
   Descent(const BoundaryValueProblem& problem, const Path& saddle)
       : problem_(problem),
         h_(problem.time / saddle.intervals),
-        equations_(problem.dynamics, h_, saddle.intervals),
+        equations_(problem, saddle.intervals),
         matrix_(equations_.matrix()),
         walled_(in_one_chart(problem.dynamics, saddle)),
         extent_(extent_of(saddle)) {}

@@ -7,23 +7,31 @@
 
 namespace carnot::internal {
 
-DiscreteEquations::DiscreteEquations(const Dynamics& dynamics,
-                                     double h,
+DiscreteEquations::DiscreteEquations(const BoundaryValueProblem& problem,
                                      int intervals,
                                      double drift)
-    : dynamics_(dynamics),
-      lagrangian_(dynamics, h, drift),
-      h_(h),
-      n_(dynamics.dof),
-      k_(PathLagrangian::multipliers(dynamics)),
+    : dynamics_(problem.dynamics),
+      lagrangian_(dynamics_, problem.time / intervals, drift),
+      h_(problem.time / intervals),
+      n_(dynamics_.dof),
+      k_(PathLagrangian::multipliers(dynamics_)),
       intervals_(intervals),
+      free_from_(n_, -1),
+      free_to_(n_, -1),
       m_(2 * n_ + k_),
       unknowns_(m_),
       middle_(n_),
       velocity_(n_),
       terms_(n_ + k_ + 1),
       by_middle_(terms_.size() * 2 * n_),
-      slopes_(2 * n_ * n_) {}
+      slopes_(2 * n_ * n_) {
+  for (int j = 0; j < n_; ++j) {
+    if (problem.is_free_from(j)) free_from_[j] = first_++;
+  }
+  for (int j = 0; j < n_; ++j) {
+    if (problem.is_free_to(j)) free_to_[j] = first_ + inner() + last_++;
+  }
+}
 
 double DiscreteEquations::evaluate(const Path& path,
                                    std::vector<double>& residual,
@@ -88,11 +96,15 @@ void DiscreteEquations::move(const Path& from,
   to.q = from.q;
   to.lambda = from.lambda;
   for (int i = 0; i < intervals_; ++i) {
-    const int start = i * (n_ + k_);
+    const int start = first_ + i * (n_ + k_);
     for (int j = 0; j < k_; ++j) to.lambda[i * k_ + j] -= step * direction[start + j];
     for (int j = 0; j < n_ && i + 1 < intervals_; ++j) {
       to.configuration(i + 1)[j] -= step * direction[start + k_ + j];
     }
+  }
+  for (int j = 0; j < n_; ++j) {
+    if (free_from_[j] >= 0) to.configuration(0)[j] -= step * direction[free_from_[j]];
+    if (free_to_[j] >= 0) to.configuration(intervals_)[j] -= step * direction[free_to_[j]];
   }
 }
 

@@ -6,13 +6,14 @@
 //
 // This is the midpoint rule with momenta that match at every node. It is also the gradient of
 // sum F_d, the action less lambda times the constraints. Unknowns and equations are ordered
-// lambda_0, q_1, lambda_1, q_2, ..., lambda_{K-1}. The matrix holds exact second derivatives and is
-// banded.
+// lambda_0, q_1, lambda_1, q_2, ..., lambda_{K-1}. Free coordinates of q_0 come before them and
+// those of q_K after them; their equations say that the momentum vanishes there. The matrix holds
+// exact second derivatives and is banded.
 #pragma once
 
 #include <vector>
 
-#include "carnot/dynamics.h"
+#include "carnot/shooting/boundary_value_problem.h"
 #include "carnot/shooting/linear/banded_lu.h"
 #include "carnot/shooting/path/path.h"
 #include "carnot/shooting/path/path_lagrangian.h"
@@ -21,14 +22,16 @@ namespace carnot::internal {
 
 class DiscreteEquations {
  public:
-  // `h` is the length of an interval, and `drift` that of path_lagrangian.h. Keeps a reference to
-  // the dynamics.
-  DiscreteEquations(const Dynamics& dynamics, double h, int intervals, double drift = 1);
+  // `drift` is that of path_lagrangian.h. Keeps a reference to the dynamics of the problem.
+  DiscreteEquations(const BoundaryValueProblem& problem, int intervals, double drift = 1);
 
-  [[nodiscard]] int size() const { return intervals_ * k_ + (intervals_ - 1) * n_; }
+  [[nodiscard]] int size() const { return first_ + inner() + last_; }
   [[nodiscard]] BandedLu matrix() const { return {size(), band(), band()}; }
   // Whether an unknown is a multiplier.
-  [[nodiscard]] bool is_multiplier(int unknown) const { return unknown % (n_ + k_) < k_; }
+  [[nodiscard]] bool is_multiplier(int unknown) const {
+    const int place = unknown - first_;
+    return place >= 0 && place < inner() && place % (n_ + k_) < k_;
+  }
 
   // What stands for the second derivatives of sum F_d by the nodes: a combination of themselves and
   // of B. B = sum h J'J with J = dr/dq is made of those of the kinetic energy, without the
@@ -50,12 +53,14 @@ class DiscreteEquations {
 
  private:
   [[nodiscard]] int band() const { return 2 * n_ + k_ - 1; }
-  // Index of argument `a` of interval i among the unknowns; -1 for a fixed end.
+  // Number of multipliers and of coordinates of inner nodes.
+  [[nodiscard]] int inner() const { return intervals_ * k_ + (intervals_ - 1) * n_; }
+  // Index of argument `a` of interval i among the unknowns; -1 where an end is fixed.
   [[nodiscard]] int unknown(int i, int a) const {
-    const int start = i * (n_ + k_);
+    const int start = first_ + i * (n_ + k_);
     if (a >= 2 * n_) return start + a - 2 * n_;
-    if (a >= n_) return i + 1 == intervals_ ? -1 : start + k_ + a - n_;
-    return i == 0 ? -1 : start - n_ + a;
+    if (a >= n_) return i + 1 == intervals_ ? free_to_[a - n_] : start + k_ + a - n_;
+    return i == 0 ? free_from_[a] : start - n_ + a;
   }
   // Sets slopes_, n x 2n: dr of interval i by both nodes.
   void set_slopes(const Path& path, int i);
@@ -66,6 +71,10 @@ class DiscreteEquations {
   int n_;
   int k_;
   int intervals_;
+  int first_ = 0;               // how many coordinates of q_0 are free,
+  int last_ = 0;                // and of q_K
+  std::vector<int> free_from_;  // the unknown that each is, or -1
+  std::vector<int> free_to_;
   int m_;
   std::vector<int> unknowns_;  // of the arguments of one interval
   std::vector<double> middle_;

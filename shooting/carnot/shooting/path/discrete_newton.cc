@@ -9,7 +9,7 @@
 namespace carnot::internal {
 
 std::vector<double> residual_of(const BoundaryValueProblem& problem, const Path& path) {
-  DiscreteEquations equations(problem.dynamics, problem.time / path.intervals, path.intervals);
+  DiscreteEquations equations(problem, path.intervals);
   std::vector<double> residual;
   equations.evaluate(path, residual, nullptr);
   return residual;
@@ -22,7 +22,7 @@ DiscreteNewton tighten(const BoundaryValueProblem& problem,
   // zero, magnified near singular frames.
   constexpr double kRoundedOff = 1e-6;
   const double h = problem.time / path.intervals;
-  DiscreteEquations equations(problem.dynamics, h, path.intervals, options.drift);
+  DiscreteEquations equations(problem, path.intervals, options.drift);
   BandedLu matrix = equations.matrix();
   std::vector<double> residual;
   const auto evaluate = [&](const Path& at, BandedLu* into) {

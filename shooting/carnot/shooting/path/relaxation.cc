@@ -158,6 +158,8 @@ Relaxation relax(const BoundaryValueProblem& problem,
   ChainOptions inner;
   inner.max_iterations = options.inner_iterations;
   inner.radius = 1 / options.caution;
+  inner.free_first = problem.free_from;
+  inner.free_last = problem.free_to;
   for (int outer = 0; outer < options.outer_iterations; ++outer) {
     result.iterations += minimise_chain(residuals, shared.residuals(), dynamics.dof, inner, path.q);
     state = terms_of(dynamics, h, path);

@@ -10,11 +10,20 @@ std::vector<int> movable(const SceneInfo& info) {
   return coordinates;
 }
 
+std::vector<double> origin_of(const BoundaryValueProblem& problem) {
+  std::vector<double> origin(problem.from.size(), 0.0);
+  for (const int j : movable(problem.dynamics.info)) {
+    origin[j] = problem.is_free_from(j) ? problem.to[j] : problem.from[j];
+  }
+  return origin;
+}
+
 BoundaryValueProblem at_origin(const BoundaryValueProblem& problem) {
   BoundaryValueProblem moved = problem;
-  for (const int j : movable(problem.dynamics.info)) {
-    moved.to[j] -= moved.from[j];
-    moved.from[j] = 0;
+  const std::vector<double> origin = origin_of(problem);
+  for (std::size_t j = 0; j < origin.size(); ++j) {
+    moved.to[j] -= origin[j];
+    moved.from[j] -= origin[j];
   }
   return moved;
 }

@@ -10,7 +10,11 @@ namespace carnot::internal {
 // The coordinates along which translations are symmetries. The scene says which they are.
 std::vector<int> movable(const SceneInfo& info);
 
-// The same problem with these coordinates of `from` at zero, where they cost no digits.
+// How far the origin of these coordinates is moved, of length n: to the start or, where that is
+// free, to the target.
+std::vector<double> origin_of(const BoundaryValueProblem& problem);
+
+// The same problem with these coordinates of the start at zero, where they cost no digits.
 BoundaryValueProblem at_origin(const BoundaryValueProblem& problem);
 
 }  // namespace carnot::internal

@@ -10,6 +10,7 @@
 #include "carnot/shooting/path/discrete_newton.h"
 #include "carnot/shooting/path/drift.h"
 #include "carnot/shooting/path/homotopy.h"
+#include "carnot/shooting/problem/ends.h"
 #include "carnot/shooting/problem/hamiltonian_terms.h"
 #include "carnot/shooting/problem/manifold.h"
 
@@ -47,6 +48,7 @@ class Draws {
   }
   double normal() { return normal_(random_); }
   double uniform(double a, double b) { return a + (b - a) * uniform_(random_); }
+  std::mt19937_64& generator() { return random_; }
   double log_uniform(double a, double b) { return std::exp(uniform(std::log(a), std::log(b))); }
 
  private:
@@ -146,7 +148,7 @@ void DriftStarts::scan_scales() {
   for (const auto& q : nodes) {
     double sum = 0;
     for (int j = 0; j < n; ++j) {
-      const double apart = q[j] - problem_.to[j];
+      const double apart = problem_.is_free_to(j) ? 0 : q[j] - problem_.to[j];
       sum += apart * apart / reach_.sizes[j];
     }
     miss.push_back(sum);
@@ -189,6 +191,7 @@ RelaxedStart DriftStarts::scaled_start(double d, int intervals) const {
   const std::vector<double>& end = nodes.back();
   const auto correct = [&](double s, Path& trial) {
     for (int j = 0; j < n; ++j) {
+      if (problem_.is_free_to(j)) continue;
       trial.configuration(intervals)[j] = (1 - s) * end[j] + s * problem_.to[j];
     }
     DiscreteNewtonOptions newton;
@@ -219,10 +222,14 @@ Path DriftStarts::random_path(int i, int intervals, double& relaxation) const {
   Draws draws(seed_, i);
   const double least = problem_.dynamics.forced > 0 ? kLeastOnManifold : kLeastRelaxed;
   relaxation = draws.log_uniform(least, kMostRelaxed);
-  Path path =
-      i % 4 >= 2 ? blended_drift(problem_, intervals, draws) : straight(problem_, intervals);
-  const double size =
-      draws.log_uniform(kLeastWiggle, kMostWiggle) * std::sqrt(2 * action_ * problem_.time);
+  const double way = std::sqrt(2 * action_ * problem_.time);
+  std::vector<double> ways;  // by coordinate
+  for (const double s : reach_.sizes) ways.push_back(way * std::sqrt(s));
+  const bool moves = i > 0 && problem_.has_free_ends();
+  const BoundaryValueProblem problem =
+      moves ? with_ends_moved(problem_, ways, draws.generator()) : problem_;
+  Path path = i % 4 >= 2 ? blended_drift(problem, intervals, draws) : straight(problem, intervals);
+  const double size = draws.log_uniform(kLeastWiggle, kMostWiggle) * way;
   for (int m = 1; m <= kWiggles && i > 0; ++m) {  // the first is the straight line itself
     for (int j = 0; j < n; ++j) {
       const double amplitude = size * std::sqrt(reach_.sizes[j]) * draws.normal() / m;

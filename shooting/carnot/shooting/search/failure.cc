@@ -8,6 +8,7 @@
 #include "carnot/shooting/extremal/conjugate_times.h"
 #include "carnot/shooting/linear/dense.h"
 #include "carnot/shooting/linear/round_off.h"
+#include "carnot/shooting/problem/ends.h"
 #include "carnot/shooting/shoot/end_point.h"
 
 namespace carnot::internal {
@@ -23,27 +24,27 @@ std::string regularity(const BoundaryValueProblem& problem) {
   return at.status == RateStatus::kOk ? "" : "; at the target: " + std::string(describe(at.status));
 }
 
-// What the flow from p0 says.
+// What the flow from the unknowns x of the start says.
 struct EndPoint {
   std::string text;
   bool beyond_double = false;  // dq(T)/dp0 is so ill-conditioned that p0 has no digit
 };
 
-EndPoint end_point(const BoundaryValueProblem& problem, const std::vector<double>& p0) {
+EndPoint end_point(const BoundaryValueProblem& problem, const std::vector<double>& x) {
   std::ostringstream text;
   text.precision(2);
   const int n = problem.dynamics.dof;
   std::vector<double> z;
-  const auto tangent = end_point_tangent(problem, p0, problem.time, kSteps, z);
+  const auto tangent = end_point_tangent(problem, x, problem.time, kSteps, z);
   if (!tangent) return {"the flow from its momentum cannot be integrated"};
   const Eigen::VectorXd values = singular_values(tangent->topRows(n));
-  const auto rank = n - static_cast<int>(kernel_of(Units(problem, p0.data()), *tangent).cols());
+  const auto rank = n - static_cast<int>(kernel_of(Units(problem, x), *tangent).cols());
   const double condition = values[0] / values[n - 1];
-  text << "the flow from its momentum ends " << largest_difference(z.data(), problem.to.data(), n)
+  text << "the flow from its momentum ends " << endpoint_error(problem, z.data())
        << " away, where dq(T)/dp(0) has rank " << rank << " of " << n << " and condition "
        << condition;
   const ConjugateTimes conjugate =
-      conjugate_times(problem, knots_of(problem, p0, 1, kSteps), kSteps / 4);
+      conjugate_times(problem, knots_of(problem, x, 1, kSteps), kSteps / 4);
   if (conjugate.known) {
     if (conjugate.times.empty())
       text << ", before any conjugate time";
@@ -149,8 +150,8 @@ Failure explain_failure(const BoundaryValueProblem& problem,
   }
   const Path* nearest = search.nearest_discrete();
   if (nearest == nullptr) return no_discrete(problem, search);
-  const std::vector<double> p0(nearest->momentum(0), nearest->momentum(0) + nearest->dof);
-  const EndPoint end = end_point(problem, p0);
+  const Knots knots = knots_of(*nearest, 1);
+  const EndPoint end = end_point(problem, start_unknowns(problem, knots.at(0)));
   const bool beyond = !joined && end.beyond_double;
   const Reason reason = beyond ? Reason::kBeyondDouble : search.furthest();
   return {reason,

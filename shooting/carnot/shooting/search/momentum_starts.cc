@@ -27,6 +27,9 @@ std::vector<double> momentum_start(const BoundaryValueProblem& problem, std::uin
     for (double& x : p) x = factor * normal(random);
   }
   if (problem.dynamics.forced > 0 && !bring_to_manifold(problem, p)) return {};
+  for (int j = 0; j < n; ++j) {
+    if (problem.is_free_from(j)) p[j] = problem.from[j];
+  }
   return p;
 }
 

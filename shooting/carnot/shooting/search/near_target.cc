@@ -48,7 +48,7 @@ bool settle(const BoundaryValueProblem& problem, Path& path) {
 std::optional<NearTarget> NearTarget::of(const BoundaryValueProblem& problem) {
   constexpr double kEasy = 0.03;  // displacement in units of S that relaxation reaches
   constexpr double kWorthIt = 1.1;
-  if (!problem.dynamics.has_transcription()) return std::nullopt;
+  if (!problem.dynamics.has_transcription() || problem.has_free_ends()) return std::nullopt;
   auto dilation = Dilation::at_start(problem);
   if (!dilation) return std::nullopt;
   const VectorXd y = dilation->coordinates(problem.to.data());

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <utility>
 
 #include "carnot/shooting/path/refinement.h"
+#include "carnot/shooting/problem/ends.h"
 #include "carnot/shooting/shoot/end_point.h"
 #include "carnot/shooting/shoot/multiple_shooting.h"
 
@@ -63,15 +65,18 @@ Outcome shoot_along(const BoundaryValueProblem& problem,
   for (int j = 0; j < n; ++j) {
     velocity[j] = (path.configuration(1)[j] - path.configuration(0)[j]) / h;
   }
-  std::vector<double> p0(n);
+  std::vector<double> z(path.configuration(0), path.configuration(0) + n);
+  z.resize(2 * n);
   const std::vector<double> lambda(problem.dynamics.multipliers, 0.0);
-  problem.dynamics.momentum(0, problem.from, velocity, lambda, p0);
-  const double distance = largest_difference(problem.from.data(), problem.to.data(), n);
+  const std::span<double> start(z);
+  problem.dynamics.momentum(0, start.first(n), velocity, lambda, start.subspan(n));
+  std::vector<double> x = start_unknowns(problem, z.data());
+  const double distance = distance_between_ends(problem);
   Eigen::MatrixXd tangent;
-  if (!(correct(problem, kFewSteps, 0, p0, tangent) <= kPart * distance)) {
+  if (!(correct(problem, kFewSteps, 0, x, tangent) <= kPart * distance)) {
     return {std::nullopt, Reason::kNotJoined};
   }
-  return verify(problem, knots_of(problem, p0, 1, kFewSteps), 2 * kFewSteps, options.tolerance);
+  return verify(problem, knots_of(problem, x, 1, kFewSteps), 2 * kFewSteps, options.tolerance);
 }
 
 Outcome polish(const BoundaryValueProblem& problem,

@@ -9,6 +9,7 @@
 #include "carnot/shooting/path/descent.h"
 #include "carnot/shooting/path/discrete_newton.h"
 #include "carnot/shooting/path/refinement.h"
+#include "carnot/shooting/problem/ends.h"
 #include "carnot/shooting/problem/units.h"
 #include "carnot/shooting/search/momentum_starts.h"
 #include "carnot/shooting/search/polish.h"
@@ -129,8 +130,9 @@ void Search::sweep_round(int round) {
   sweep.intervals = drift_ ? intervals_ : round % 2 == 0 ? 64 : 160;
   sweep.momentum_scale.assign(problem_.dynamics.dof, 0.0);
   // Row j: the momentum of coordinate j in the units of the shortest extremal.
+  const Knots& best = extremals_[extremals_.best()].knots;
   const Eigen::MatrixXd natural =
-      Units(problem_, extremals_[extremals_.best()].geodesic.p0.data())
+      Units(problem_, start_unknowns(problem_, best.at(0)))
           .momenta(Eigen::MatrixXd::Identity(problem_.dynamics.dof, problem_.dynamics.dof));
   double shortest = std::numeric_limits<double>::infinity();
   double longest = 0;

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "carnot/shooting/linear/round_off.h"
+#include "carnot/shooting/problem/ends.h"
 #include "carnot/shooting/problem/manifold.h"
 #include "carnot/shooting/problem/scales.h"
 
@@ -38,6 +39,21 @@ std::vector<double> amplitudes(int n, std::uint64_t seed, int i) {
     for (int j = 0; j < n; ++j) a[m * n + j] = normal(random) / (m + 1);
   }
   return a;
+}
+
+// The problem with free coordinates of its ends where start `i` begins; the first leaves them.
+BoundaryValueProblem at_start(const BoundaryValueProblem& problem,
+                              std::uint64_t seed,
+                              int i,
+                              double size,
+                              const StartScales& scales) {
+  if (i == 0 || !problem.has_free_ends()) return problem;
+  constexpr std::uint64_t kEnds = 1;  // apart from the numbers of the wiggle
+  std::seed_seq sequence{seed, seed >> 32U, static_cast<std::uint64_t>(i), kEnds};
+  std::mt19937_64 random(sequence);
+  std::vector<double> sizes = scales.per_metre;
+  for (double& x : sizes) x *= size;
+  return with_ends_moved(problem, sizes, random);
 }
 
 // The straight line plus sum_m a_m sin(m pi s), in units of `size`.
@@ -74,7 +90,7 @@ Path wiggled_line(const BoundaryValueProblem& problem,
 
 }  // namespace
 
-Start make_start(const BoundaryValueProblem& problem, std::uint64_t seed, int i, int intervals) {
+Start make_start(const BoundaryValueProblem& asked, std::uint64_t seed, int i, int intervals) {
   constexpr double kMaxPenalty = 1e6;  // beyond this the least squares lose their digits
   constexpr std::array kFactors{1.0, 0.6, 2.0};
   constexpr std::array kPenalties{1.0, 2.5, 1.0};
@@ -82,14 +98,15 @@ Start make_start(const BoundaryValueProblem& problem, std::uint64_t seed, int i,
   constexpr int kOuterStiff = 4;
   constexpr double kStiff = 100;
   constexpr double kShrink = 0.7;  // of a wiggle that leaves the chart
-  const int n = problem.dynamics.dof;
-  const StartScales scales = start_scales(problem);
+  const int n = asked.dynamics.dof;
+  const StartScales scales = start_scales(asked);
   const double ratio = scales.distance / scales.radian;
   const bool against = scales.violation > 0.1 * scales.distance && ratio < 0.5;
   const std::array exponents{1.0 / 3, 0.5, against ? 1.0 / 3 : 1.0};
   const double unit = scales.radian * std::pow(ratio, exponents[i % 3]);
   double size = unit * kFactors[i / 3 % 3];
   const std::vector<double> a = amplitudes(n, seed, i);
+  const BoundaryValueProblem problem = at_start(asked, seed, i, size, scales);
 
   Start start;
   start.path = wiggled_line(problem, intervals, size, scales, a);

@@ -13,7 +13,8 @@
 // size D that needs brackets of order r costs a path of length D^(1/r). Where the straight line
 // violates the constraints and is short, e = 1 is hopeless and is left out. A wiggle that leaves
 // the chart is made smaller, unless the straight line leaves it, too. Where there are holonomic
-// constraints, the nodes are brought to their manifold.
+// constraints, the nodes are brought to their manifold. Free coordinates of the ends are drawn
+// around where they are looked for first.
 #pragma once
 
 #include <cstdint>

@@ -10,6 +10,7 @@
 #include "carnot/numerics/parallel.h"
 #include "carnot/shooting/path/path_lagrangian.h"
 #include "carnot/shooting/problem/dilation.h"
+#include "carnot/shooting/problem/ends.h"
 #include "carnot/shooting/problem/manifold.h"
 #include "carnot/shooting/shoot/end_point.h"
 #include "carnot/shooting/shoot/knots.h"
@@ -18,11 +19,11 @@ namespace carnot::internal {
 namespace {
 
 struct Draw {
-  std::vector<double> p;
+  std::vector<double> x;  // unknowns of the start
   double miss = std::numeric_limits<double>::infinity();
 };
 
-// A random momentum at `from` with a kinetic energy in the range; empty where there is none.
+// A random momentum at the start with a kinetic energy in the range; empty where there is none.
 std::vector<double> draw_momentum(const BoundaryValueProblem& problem,
                                   const SweepOptions& options,
                                   std::mt19937_64& random) {
@@ -30,7 +31,10 @@ std::vector<double> draw_momentum(const BoundaryValueProblem& problem,
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform(options.lowest, options.highest);
   std::vector<double> p(n), zero(n, 0.0), velocity(n), lambda(problem.dynamics.multipliers);
-  for (int j = 0; j < n; ++j) p[j] = options.momentum_scale[j] * normal(random);
+  for (int j = 0; j < n; ++j) {
+    p[j] = options.momentum_scale[j] * normal(random);
+    if (problem.is_free_from(j)) p[j] = 0;
+  }
   if (!(options.highest > 0)) {
     constexpr double kSmallest = 0.1;  // of the standard deviations
     constexpr double kLargest = 3;
@@ -50,13 +54,21 @@ std::vector<double> draw_momentum(const BoundaryValueProblem& problem,
   return p;
 }
 
+// Unknowns of the start; none where there is no such momentum.
 std::vector<double> draw(const BoundaryValueProblem& problem, const SweepOptions& options, int i) {
   std::seed_seq sequence{options.seed,
                          options.seed >> 32U,
                          static_cast<std::uint64_t>(options.round),
                          static_cast<std::uint64_t>(i)};
   std::mt19937_64 random(sequence);
-  return draw_momentum(problem, options, random);
+  if (!problem.has_free_ends()) return draw_momentum(problem, options, random);
+  const std::vector<double> sizes(problem.from.size(), distance_between_ends(problem));
+  const BoundaryValueProblem moved = with_ends_moved(problem, sizes, random);
+  std::vector<double> z = moved.from;
+  const std::vector<double> p = draw_momentum(moved, options, random);
+  if (p.empty()) return p;
+  z.insert(z.end(), p.begin(), p.end());
+  return start_unknowns(problem, z.data());
 }
 
 // How far an end is from the target. Where the target is near, coordinates of higher weight are
@@ -65,6 +77,7 @@ class Miss {
  public:
   explicit Miss(const BoundaryValueProblem& problem) : problem_(problem) {
     constexpr double kNear = 0.1;  // gauge
+    if (problem.has_free_ends()) return;
     if (problem.dynamics.has_transcription()) dilation_ = Dilation::at_start(problem);
     if (!dilation_) return;
     to_ = dilation_->coordinates(problem.to.data());
@@ -76,8 +89,12 @@ class Miss {
     }
   }
 
-  [[nodiscard]] double of(const double* q) const {
-    if (!dilation_) return largest_difference(q, problem_.to.data(), problem_.dynamics.dof);
+  // Of the trajectory from one phase point to another.
+  [[nodiscard]] double of(const double* start, const double* q) const {
+    if (!dilation_) {
+      const double* p = start + problem_.dynamics.dof;
+      return carnot::internal::miss(problem_, q, length_per_momentum(problem_, p));
+    }
     return dilation_->scaled(dilation_->coordinates(q) - to_, unit_).cwiseAbs().maxCoeff();
   }
 
@@ -105,25 +122,26 @@ void run(const BoundaryValueProblem& problem,
   std::vector<double> z;
   z.reserve(draws.size() * 2 * n);
   for (const Draw& draw : draws) {
-    z.insert(z.end(), problem.from.begin(), problem.from.end());
-    z.insert(z.end(), draw.p.begin(), draw.p.end());
+    const std::vector<double> start = phase_point(problem, draw.x);
+    z.insert(z.end(), start.begin(), start.end());
   }
   (void)(dynamics.has_adaptive_batch()
              ? dynamics.adaptive_batch(0, problem.time, kTolerance, count, z, threads)
              : dynamics.flow_batch(StepPlan::equal(0, problem.time, steps), count, z, threads));
   const Miss target(problem);
   for (int i = 0; i < count; ++i) {
-    const double miss = target.of(&z[static_cast<std::size_t>(i) * 2 * n]);
+    const std::vector<double> start = phase_point(problem, draws[i].x);
+    const double miss = target.of(start.data(), &z[static_cast<std::size_t>(i) * 2 * n]);
     if (std::isfinite(miss)) draws[i].miss = miss;
   }
 }
 
-// The trajectory from p with its end pulled to the target, and its multipliers.
-Path pulled(const BoundaryValueProblem& problem, const std::vector<double>& p, int intervals) {
+// The trajectory from x with its end pulled to the target, and its multipliers.
+Path pulled(const BoundaryValueProblem& problem, const std::vector<double>& x, int intervals) {
   const Dynamics& dynamics = problem.dynamics;
   const int n = dynamics.dof;
   const int k = PathLagrangian::multipliers(dynamics);
-  const Knots knots = knots_of(problem, p, intervals, intervals);
+  const Knots knots = knots_of(problem, x, intervals, intervals);
   Path path;
   path.intervals = intervals;
   path.dof = n;
@@ -133,12 +151,14 @@ Path pulled(const BoundaryValueProblem& problem, const std::vector<double>& p, i
   for (int i = 0; i <= intervals; ++i) {
     const double share = static_cast<double>(i) / intervals;
     for (int j = 0; j < n; ++j) {
-      const double missing = problem.to[j] - knots.at(intervals)[j];
+      const double missing = problem.is_free_to(j) ? 0 : problem.to[j] - knots.at(intervals)[j];
       path.configuration(i)[j] = knots.at(i)[j] + share * missing;
       path.p[i * n + j] = knots.at(i)[n + j];
     }
   }
-  std::copy(problem.to.begin(), problem.to.end(), path.configuration(intervals));
+  for (int j = 0; j < n; ++j) {
+    if (!problem.is_free_to(j)) path.configuration(intervals)[j] = problem.to[j];
+  }
   std::vector<double> middle(2 * n);
   const std::span<const double> z(middle);
   for (int i = 0; i < intervals && k > 0; ++i) {
@@ -159,15 +179,15 @@ std::vector<Path> near_hits(const BoundaryValueProblem& problem,
                             const SweepOptions& options,
                             int threads) {
   std::vector<Draw> draws(options.flows);
-  parallel_for(options.flows, threads, [&](int i) { draws[i].p = draw(problem, options, i); });
-  std::erase_if(draws, [](const Draw& draw) { return draw.p.empty(); });
+  parallel_for(options.flows, threads, [&](int i) { draws[i].x = draw(problem, options, i); });
+  std::erase_if(draws, [](const Draw& draw) { return draw.x.empty(); });
   run(problem, options, threads, draws);
   std::stable_sort(
       draws.begin(), draws.end(), [](const Draw& a, const Draw& b) { return a.miss < b.miss; });
   const auto kept = std::min<std::size_t>(options.keep, draws.size());
   std::vector<Path> paths;
   for (std::size_t i = 0; i < kept && std::isfinite(draws[i].miss); ++i) {
-    paths.push_back(pulled(problem, draws[i].p, options.intervals));
+    paths.push_back(pulled(problem, draws[i].x, options.intervals));
   }
   return paths;
 }

@@ -69,7 +69,8 @@ class Jump final : public ceres::CostFunction {
       if (jacobians[b] == nullptr) continue;
       for (int row = 0; row < num_residuals(); ++row) {
         for (int j = 0; j < n; ++j) {
-          const double diagonal = row == (b - 2) * n + j ? -1 / equations_.scale(row) : 0;
+          const bool same = row == (b - 2) * n + j;  // of the next knot; b < 2: of this one
+          const double diagonal = same ? -1 / equations_.scale(row) : 0;
           jacobians[b][row * n + j] = b < 2 ? jacobian[row * 2 * n + b * n + j] : diagonal;
         }
       }
@@ -111,6 +112,23 @@ ceres::Solver::Options solver_options(const BoundaryValueProblem& problem,
   return solver;
 }
 
+// Keeps what is not unknown at the start: q(0), or p_j(0) where q_j(0) is free.
+void hold_start(const BoundaryValueProblem& problem, Knots& knots, ceres::Problem& joined) {
+  const int n = knots.dof;
+  std::vector<int> configuration;
+  std::vector<int> momentum;
+  for (int j = 0; j < n; ++j) (problem.is_free_from(j) ? momentum : configuration).push_back(j);
+  double* block = knots.at(0);
+  for (const std::vector<int>* fixed : {&configuration, &momentum}) {
+    if (static_cast<int>(fixed->size()) == n) {
+      joined.SetParameterBlockConstant(block);
+    } else if (!fixed->empty()) {
+      joined.SetManifold(block, new ceres::SubsetManifold(n, *fixed));
+    }
+    block += n;
+  }
+}
+
 }  // namespace
 
 Shooting shoot_with_ceres(const BoundaryValueProblem& problem,
@@ -130,7 +148,7 @@ Shooting shoot_with_ceres(const BoundaryValueProblem& problem,
       joined.AddResidualBlock(jump, nullptr, z, z + n, z + 2 * n, z + 3 * n);
     }
   }
-  joined.SetParameterBlockConstant(knots.at(0));
+  hold_start(problem, knots, joined);
   StopWhenJoined stop(options.tolerance);
   ceres::Solver::Options solver = solver_options(problem, options);
   solver.callbacks.push_back(&stop);

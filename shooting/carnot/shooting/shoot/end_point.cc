@@ -6,6 +6,7 @@
 
 #include "carnot/numerics/linear_algebra.h"
 #include "carnot/shooting/linear/dense.h"
+#include "carnot/shooting/problem/ends.h"
 
 namespace carnot::internal {
 
@@ -19,18 +20,24 @@ double largest_difference(const double* a, const double* b, int count) {
 }
 
 std::optional<Eigen::MatrixXd> end_point_tangent(const BoundaryValueProblem& problem,
-                                                 const std::vector<double>& p0,
+                                                 const std::vector<double>& x,
                                                  double t,
                                                  long steps,
                                                  std::vector<double>& z) {
   const int n = problem.dynamics.dof;
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> m(2 * n, 2 * n);
-  z = problem.from;
-  z.insert(z.end(), p0.begin(), p0.end());
+  z = phase_point(problem, x);
   const StepPlan plan = StepPlan::equal(0, t, steps);
   if (!problem.dynamics.tangent_flow(plan, z, span_of(m)).completed()) return std::nullopt;
   if (!m.allFinite()) return std::nullopt;
-  return Eigen::MatrixXd(m.rightCols(n));
+  Eigen::MatrixXd tangent(2 * n, n);
+  for (int j = 0; j < n; ++j) tangent.col(j) = m.col(start_index(problem, j));
+  for (int j = 0; j < n; ++j) {
+    if (!problem.is_free_to(j)) continue;
+    tangent.row(j).swap(tangent.row(n + j));
+    tangent.row(n + j) *= -1;
+  }
+  return tangent;
 }
 
 Eigen::MatrixXd kernel_of(const Units& units, const Eigen::MatrixXd& raw, double tolerance) {
@@ -50,7 +57,7 @@ Eigen::MatrixXd kernel_of(const Units& units, const Eigen::MatrixXd& raw, double
 double correct(const BoundaryValueProblem& problem,
                long steps,
                double tolerance,
-               std::vector<double>& p0,
+               std::vector<double>& x,
                Eigen::MatrixXd& tangent,
                double rank) {
   constexpr int kMaxIterations = 6;
@@ -59,29 +66,32 @@ double correct(const BoundaryValueProblem& problem,
   double best = std::numeric_limits<double>::infinity();
   bool cautious = false;
   Eigen::VectorXd residual(n);
-  std::vector<double> trial = p0;
-  std::vector<double> z;
+  std::vector<double> trial = x;
+  std::vector<double> z = phase_point(problem, x);
+  const double unit = length_per_momentum(problem, z.data() + n);
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     const auto at_trial = end_point_tangent(problem, trial, problem.time, steps, z);
-    const double error = at_trial ? largest_difference(z.data(), problem.to.data(), n)
-                                  : std::numeric_limits<double>::infinity();
+    const double error =
+        at_trial ? miss(problem, z.data(), unit) : std::numeric_limits<double>::infinity();
     if (error < best) {
       const bool gained = error < 0.5 * best;
       best = error;
-      p0 = trial;
+      x = trial;
       tangent = *at_trial;
       if (!gained || error <= tolerance) break;
-      for (int j = 0; j < n; ++j) residual[j] = z[j] - problem.to[j];
+      for (int j = 0; j < n; ++j) {
+        residual[j] = z[target_index(problem, j)] - target_value(problem, j);
+      }
     } else {
       if (cautious || iteration == 0) break;
       cautious = true;
     }
-    const Units units(problem, p0.data());
+    const Units units(problem, x);
     const Eigen::VectorXd step =
         units.momenta(least_squares(units.tangent(tangent).topRows(n),
                                     units.displacement(residual),
                                     cautious ? std::max(rank, kCautious) : rank));
-    for (int j = 0; j < n; ++j) trial[j] = p0[j] - step[j];
+    for (int j = 0; j < n; ++j) trial[j] = x[j] - step[j];
   }
   return best;
 }
@@ -89,14 +99,14 @@ double correct(const BoundaryValueProblem& problem,
 void reduce(const BoundaryValueProblem& problem,
             long steps,
             double tolerance,
-            std::vector<double>& p0,
+            std::vector<double>& x,
             Eigen::MatrixXd& tangent) {
   constexpr double kGenerous = 1e-4;
   constexpr double kSamePath = 1e-4;  // of its extent, where it is at a time without symmetry
   constexpr double kOnTheWay = 0.43;
-  const Eigen::MatrixXd kernel = kernel_of(Units(problem, p0.data()), tangent, kGenerous);
+  const Eigen::MatrixXd kernel = kernel_of(Units(problem, x), tangent, kGenerous);
   if (kernel.cols() == 0) return;
-  const Eigen::Map<const Eigen::VectorXd> p(p0.data(), static_cast<Eigen::Index>(p0.size()));
+  const Eigen::Map<const Eigen::VectorXd> p(x.data(), static_cast<Eigen::Index>(x.size()));
   const Eigen::VectorXd least = p - kernel * (kernel.transpose() * p);
   // A generous rank comes first: it leaves the kernel alone. Along the kernel the end hardly moves,
   // and Newton's method would go back along it.
@@ -111,19 +121,18 @@ void reduce(const BoundaryValueProblem& problem,
     arrives = correct(problem, steps, tolerance, trial, there, rank) <= kSlack * tolerance;
   }
   if (!arrives) return;
-  const auto on_the_way = [&](const std::vector<double>& momentum) {
-    std::vector<double> z = problem.from;
-    z.insert(z.end(), momentum.begin(), momentum.end());
+  const auto on_the_way = [&](const std::vector<double>& unknowns) {
+    std::vector<double> z = phase_point(problem, unknowns);
     const StepPlan plan = StepPlan::equal(0, kOnTheWay * problem.time, steps);
     (void)problem.dynamics.flow(plan, z);
     return z;
   };
-  const std::vector<double> before = on_the_way(p0);
+  const std::vector<double> before = on_the_way(x);
   const std::vector<double> after = on_the_way(trial);
   const int n = problem.dynamics.dof;
   const double extent = largest_difference(before.data(), problem.from.data(), n);
   if (!(largest_difference(before.data(), after.data(), n) <= kSamePath * extent)) return;
-  p0 = trial;
+  x = trial;
   tangent = there;
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "carnot/shooting/problem/ends.h"
+
 namespace carnot::internal {
 
 Knots knots_of(const Path& path, int segments) {
@@ -16,12 +18,11 @@ Knots knots_of(const Path& path, int segments) {
 }
 
 Knots knots_of(const BoundaryValueProblem& problem,
-               const std::vector<double>& p0,
+               const std::vector<double>& x,
                int segments,
                long steps) {
   const int n = problem.dynamics.dof;
-  Knots knots{segments, n, problem.from};
-  knots.z.insert(knots.z.end(), p0.begin(), p0.end());
+  Knots knots{segments, n, phase_point(problem, x)};
   std::vector<double> z = knots.z;
   for (int i = 0; i < segments; ++i) {
     const FlowReport report = problem.dynamics.flow(knot_plan(problem, segments, i, steps), z);

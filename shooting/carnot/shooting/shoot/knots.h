@@ -23,10 +23,11 @@ struct Knots {
 // Every (intervals / segments)-th node of a relaxed path.
 Knots knots_of(const Path& path, int segments);
 
-// The extremal from (from, p0), cut into segments; `steps` of the method in all. Where the flow
-// fails the remaining knots repeat the last one.
+// The extremal with the unknowns x of its start (ends.h; p(0) where no end is free), cut into
+// segments; `steps` of the method in all. Where the flow fails the remaining knots repeat the last
+// one.
 Knots knots_of(const BoundaryValueProblem& problem,
-               const std::vector<double>& p0,
+               const std::vector<double>& x,
                int segments,
                long steps);
 

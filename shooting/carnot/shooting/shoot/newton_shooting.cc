@@ -13,13 +13,13 @@
 namespace carnot::internal {
 namespace {
 
-// The unknowns p(0), z_1, ..., in units of their scale, and the jumps.
+// The unknowns at the start, z_1, ..., in units of their scale, and the jumps.
 class Banded {
  public:
   Banded(const ShootingEquations& equations, const Knots& knots)
       : equations_(equations),
         n_(knots.dof),
-        size_((2 * knots.segments - 1) * knots.dof),
+        size_(equations.unknowns()),
         matrix_(size_, 3 * n_ - 1, 3 * n_ - 1),
         block_(static_cast<std::size_t>(4) * n_ * n_) {}
 
@@ -37,9 +37,11 @@ class Banded {
       if (!with_matrix) continue;
       for (int r = 0; r < equations_.residuals(i); ++r) {
         for (int c = i == 0 ? n_ : 0; c < 2 * n_; ++c) {
-          const double entry = block_[r * 2 * n_ + c] * equations_.scale(c);
+          const int unknown = row - n_ + c;
+          const int place = equations_.place(unknown) % (2 * n_);
+          const double entry = block_[r * 2 * n_ + place] * equations_.scale(place);
           growth_ = std::max(growth_, std::abs(entry));
-          matrix_(row + r, row - n_ + c) = entry;
+          matrix_(row + r, unknown) = entry;
         }
         if (i + 1 < knots.segments) matrix_(row + r, row + n_ + r) = -1;
       }
@@ -49,7 +51,8 @@ class Banded {
 
   void move(const Knots& from, const std::vector<double>& step, double share, Knots& to) const {
     for (int c = 0; c < size_; ++c) {
-      to.z[n_ + c] = from.z[n_ + c] - share * step[c] * equations_.scale((n_ + c) % (2 * n_));
+      const int place = equations_.place(c);
+      to.z[place] = from.z[place] - share * step[c] * equations_.unit(c);
     }
   }
 

@@ -1,7 +1,7 @@
 // Multiple shooting by NLopt.
 //
-// SLSQP takes the jumps as equality constraints on the unknowns p(0), z_1, ..., stacked, and
-// minimises nothing, so that each iteration is a Newton step of least norm. The others minimise
+// SLSQP takes the jumps as equality constraints on the unknowns at the start, z_1, ..., stacked,
+// and minimises nothing, so that each iteration is a Newton step of least norm. The others minimise
 // half the sum of the squared jumps: L-BFGS over the same unknowns; MLSL, ISRES and CRS, which
 // search a box, over p(0) only, in a box around the guess. What they reach, SLSQP joins.
 #include <algorithm>
@@ -18,10 +18,10 @@ namespace {
 // Residuals and Jacobian of all segments at stacked unknowns, each divided by its own scale.
 class Stacked {
  public:
-  Stacked(const ShootingEquations& equations, const double* q0)
-      : equations_(equations), q0_(q0, q0 + equations.dof()) {}
+  Stacked(const ShootingEquations& equations, const Knots& knots)
+      : equations_(equations), knots_(knots) {}
 
-  [[nodiscard]] int unknowns() const { return (2 * equations_.segments() - 1) * equations_.dof(); }
+  [[nodiscard]] int unknowns() const { return equations_.unknowns(); }
 
   // Jacobian row-major unknowns() x unknowns(), may be null. Where a flow fails: large residuals.
   void evaluate(const double* x, double* residual, double* jacobian) const {
@@ -29,15 +29,13 @@ class Stacked {
     const int n = equations_.dof();
     const int size = unknowns();
     if (jacobian != nullptr) std::fill(jacobian, jacobian + size * size, 0.0);
-    std::vector<double> z(4 * n), block(4 * n * n);
+    std::vector<double> block(4 * n * n);
+    Knots knots = knots_;
+    for (int c = 0; c < size; ++c) knots.z[equations_.place(c)] = x[c] * equations_.unit(c);
     for (int i = 0, row = 0; i < equations_.segments(); row += equations_.residuals(i), ++i) {
-      for (int j = 0; j < 4 * n; ++j) {
-        const int column = (2 * i - 1) * n + j;
-        if (column < size) z[j] = column < 0 ? q0_[j] : x[column] * equations_.scale(j % (2 * n));
-      }
       if (!equations_.evaluate(i,
-                               z.data(),
-                               z.data() + 2 * n,
+                               knots.at(i),
+                               knots.at(i + 1),
                                residual + row,
                                jacobian != nullptr ? block.data() : nullptr)) {
         std::fill(residual + row, residual + row + equations_.residuals(i), kFailed);
@@ -47,7 +45,8 @@ class Stacked {
         for (int j = 0; j < 4 * n; ++j) {
           const int column = (2 * i - 1) * n + j;
           if (column < 0 || column >= size) continue;
-          const double inner = j < 2 * n ? block[r * 2 * n + j] * equations_.scale(j) : 0;
+          const int place = equations_.place(column) - 2 * n * i;
+          const double inner = j < 2 * n ? block[r * 2 * n + place] * equations_.scale(place) : 0;
           jacobian[(row + r) * size + column] = j < 2 * n ? inner : (j - 2 * n == r ? -1 : 0);
         }
       }
@@ -55,21 +54,17 @@ class Stacked {
   }
 
   [[nodiscard]] std::vector<double> pack(const Knots& knots) const {
-    std::vector<double> x(knots.z.begin() + equations_.dof(), knots.z.end() - 2 * knots.dof);
-    for (int c = 0; c < unknowns(); ++c) x[c] /= scale_of(c);
+    std::vector<double> x(unknowns());
+    for (int c = 0; c < unknowns(); ++c) x[c] = knots.z[equations_.place(c)] / equations_.unit(c);
     return x;
   }
   void unpack(const std::vector<double>& x, Knots& knots) const {
-    for (int c = 0; c < unknowns(); ++c) knots.z[equations_.dof() + c] = x[c] * scale_of(c);
+    for (int c = 0; c < unknowns(); ++c) knots.z[equations_.place(c)] = x[c] * equations_.unit(c);
   }
 
  private:
-  [[nodiscard]] double scale_of(int column) const {
-    return equations_.scale((column + equations_.dof()) % (2 * equations_.dof()));
-  }
-
   const ShootingEquations& equations_;
-  std::vector<double> q0_;
+  Knots knots_;  // with what is fixed at the start
 };
 
 double nothing(unsigned size, const double* /*x*/, double* gradient, void* /*data*/) {
@@ -119,7 +114,7 @@ constexpr std::array kChoices{Choice{"nlopt:lbfgs", nlopt::LD_LBFGS, false},
 // Minimises the squared jumps over all unknowns.
 int descend(const BoundaryValueProblem& problem, const ShootingOptions& options, Knots& knots) {
   const ShootingEquations equations(problem, knots, options.steps);
-  Stacked stacked(equations, knots.at(0));
+  Stacked stacked(equations, knots);
   nlopt::opt solver(nlopt::LD_LBFGS, stacked.unknowns());
   solver.set_min_objective(half_square, &stacked);
   solver.set_stopval(0.5 * options.tolerance * options.tolerance);
@@ -137,9 +132,9 @@ int search_box(const BoundaryValueProblem& problem,
                Knots& knots) {
   constexpr double kHalfWidth = 0.5;  // of the box, relative to the largest momentum
   constexpr unsigned long kSeed = 1;  // of NLopt's generator, one for each thread
-  Knots single = knots_of(problem, knots.p0(), 1, options.steps);
+  Knots single = knots_of(problem, start_unknowns(problem, knots.at(0)), 1, options.steps);
   const ShootingEquations equations(problem, single, options.steps);
-  Stacked stacked(equations, single.at(0));
+  Stacked stacked(equations, single);
   std::vector<double> x = stacked.pack(single);
   std::vector<double> lower = x;
   std::vector<double> upper = x;
@@ -157,7 +152,7 @@ int search_box(const BoundaryValueProblem& problem,
   solver.set_maxeval(20 * options.max_iterations);
   const int evaluations = run(solver, x);
   stacked.unpack(x, single);
-  knots = knots_of(problem, single.p0(), knots.segments, options.steps);
+  knots = knots_of(problem, start_unknowns(problem, single.at(0)), knots.segments, options.steps);
   return evaluations;
 }
 
@@ -173,7 +168,7 @@ Shooting shoot_with_nlopt(const BoundaryValueProblem& problem,
                                         : descend(problem, options, knots);
   }
   const ShootingEquations equations(problem, knots, options.steps);
-  Stacked stacked(equations, knots.at(0));
+  Stacked stacked(equations, knots);
   nlopt::opt solver(nlopt::LD_SLSQP, stacked.unknowns());
   std::vector<double> x = stacked.pack(knots);
   const double each = options.tolerance / std::sqrt(static_cast<double>(stacked.unknowns()));

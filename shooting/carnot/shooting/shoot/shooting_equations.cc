@@ -15,11 +15,12 @@ ShootingEquations::ShootingEquations(const BoundaryValueProblem& problem,
   double q_scale = 0;
   double p_scale = 0;
   for (int j = 0; j < dof_; ++j) {
+    if (problem.is_free_from(j) || problem.is_free_to(j)) continue;
     q_scale = std::max(q_scale, std::abs(problem.to[j] - problem.from[j]));
   }
   for (int i = 0; i <= segments_; ++i) {
     for (int j = 0; j < dof_; ++j) {
-      q_scale = std::max(q_scale, std::abs(knots.at(i)[j] - problem.from[j]));
+      q_scale = std::max(q_scale, std::abs(knots.at(i)[j] - knots.at(0)[j]));
       p_scale = std::max(p_scale, std::abs(knots.at(i)[dof_ + j]));
     }
   }
@@ -40,12 +41,13 @@ bool ShootingEquations::evaluate(
   const FlowReport report = jacobian != nullptr ? problem_.dynamics.tangent_flow(plan, end, tangent)
                                                 : problem_.dynamics.flow(plan, end);
   if (!report.completed()) return false;
-  const double* wanted = last ? problem_.to.data() : next;
   for (int row = 0; row < residuals(i); ++row) {
-    residual[row] = (end[row] - wanted[row]) / scale_[row];
+    const int at = component(i, row);
+    const double wanted = last ? target_value(problem_, row) : next[row];
+    residual[row] = (end[at] - wanted) / scale_[at];
     if (!std::isfinite(residual[row])) return false;
     for (int j = 0; jacobian != nullptr && j < size; ++j) {
-      jacobian[row * size + j] = tangent[row * size + j] / scale_[row];
+      jacobian[row * size + j] = tangent[at * size + j] / scale_[at];
       if (!std::isfinite(jacobian[row * size + j])) return false;
     }
   }

@@ -1,12 +1,14 @@
 // The equations of multiple shooting, segment by segment, for any minimiser.
 //
-// Unknowns are p(0) and the phase points at the inner knots; segment i asks for
-// flow(z_i) = z_{i+1}, the last one for q(T) = to. Jacobians are tangent flows, exact for the
-// discrete map. Residuals are divided by the size of q, or p, along the path.
+// Unknowns are those of the start (ends.h: p(0) where no end is free) and the phase points at the
+// inner knots; segment i asks for flow(z_i) = z_{i+1}, the last one for q(T) = to, or p(T) = 0
+// where the target is free. Jacobians are tangent flows, exact for the discrete map. Residuals are
+// divided by the size of q, or p, along the path.
 #pragma once
 
 #include <vector>
 
+#include "carnot/shooting/problem/ends.h"
 #include "carnot/shooting/shoot/knots.h"
 
 namespace carnot::internal {
@@ -28,6 +30,15 @@ class ShootingEquations {
       int i, const double* z, const double* next, double* residual, double* jacobian) const;
 
   [[nodiscard]] double scale(int row) const { return scale_[row]; }
+
+  // Number of unknowns, and where unknown c stands in Knots::z.
+  [[nodiscard]] int unknowns() const { return (2 * segments_ - 1) * dof_; }
+  [[nodiscard]] int place(int c) const { return c < dof_ ? start_index(problem_, c) : dof_ + c; }
+  [[nodiscard]] double unit(int c) const { return scale_[place(c) % (2 * dof_)]; }
+  // Which number of a phase point row `row` of segment i is about.
+  [[nodiscard]] int component(int i, int row) const {
+    return i + 1 == segments_ ? target_index(problem_, row) : row;
+  }
 
   // Replaces the last row of the knots by the last segment's flow.
   [[nodiscard]] bool complete(Knots& knots) const;

@@ -4,12 +4,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace carnot {
 
 struct SteeringOptions {
-  double time = 1;           // T; with V = 0 the path does not depend on it
-  bool mod_angles = true;    // angles need to agree modulo their periods only
+  double time = 1;                // T; with V = 0 the path does not depend on it
+  bool mod_angles = true;         // angles need to agree modulo their periods only
+  std::vector<bool> free_target;  // which coordinates of targets are free; empty: none
   int starts = 0;            // paths to relax; 0: until the least action has been hit often enough
   double tolerance = 1e-10;  // largest endpoint error
   double resolution = 1e-9;  // |to - from| below which the path is estimated

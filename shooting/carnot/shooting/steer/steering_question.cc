@@ -38,6 +38,7 @@ double distance_apart(const SceneInfo& info,
   double sum = 0;
   bool apart = false;
   for (std::size_t j = 0; j < from.size(); ++j) {
+    if (rules.is_free(j)) continue;
     const double step = std::abs(wrapped(info, rules, j, to[j] - from[j]));
     apart = apart || step > kSameCoordinate * (std::abs(from[j]) + std::abs(to[j]));
     sum = std::hypot(sum, step);
@@ -70,6 +71,9 @@ void SteeringQuestion::ask(const SceneInfo& info,
     for (std::size_t j = 0; j < n && contraction < 1; ++j) {
       const double step = wrapped(info, rules, j, target[j] - start[j]);
       target[j] = contraction > 0 ? start[j] + step / contraction : start[j];
+    }
+    for (std::size_t j = 0; j < n; ++j) {
+      if (rules.is_free(j)) target[j] = start[j];
     }
     for (double* x = start; x != target + n; ++x) *x += 0.0;  // -0 becomes 0
   }

@@ -3,6 +3,7 @@
 // Rigid motions of the plane, where they are symmetries, move the start to the origin with its
 // first angle 0; where time may be reversed, the lesser of the question and its reverse stands for
 // both. A target nearer than `resolution` is moved away to there, and the answer is contracted.
+// Coordinates of the target that are free are those of the start.
 #pragma once
 
 #include <span>
@@ -16,7 +17,12 @@ namespace carnot::internal {
 struct SteeringRules {
   bool reversible = true;
   bool mod_angles = true;
-  double resolution = 0;  // Euclidean norm of to - from
+  double resolution = 0;                           // Euclidean norm of to - from
+  const std::vector<bool>* free_target = nullptr;  // null: none is free
+
+  [[nodiscard]] bool is_free(std::size_t j) const {
+    return free_target != nullptr && (*free_target)[j];
+  }
 };
 
 // From the answer in the frame back to what was asked.

@@ -12,9 +12,9 @@
 namespace carnot::internal {
 namespace {
 
-SteeringAnswer answer_of(const BoundaryValueProblem& problem, Geodesic geodesic) {
+SteeringAnswer answer_of(Geodesic geodesic) {
   SteeringAnswer answer;
-  answer.target = problem.to;
+  answer.target = geodesic.to;
   for (std::size_t i = 0; i < geodesic.trajectory.t.size(); ++i) {
     for (const auto* x : {&geodesic.trajectory.q[i], &geodesic.trajectory.p[i]}) {
       answer.points.insert(answer.points.end(), x->begin(), x->end());
@@ -39,6 +39,11 @@ SteeringSearch::SteeringSearch(Dynamics dynamics, const SteeringOptions& options
   if (!(options_.resolution >= 0) || !std::isfinite(options_.resolution)) {
     throw std::invalid_argument("resolution is " + std::to_string(options_.resolution) +
                                 ", must be >= 0");
+  }
+  const std::size_t free = options_.free_target.size();
+  if (free > 0 && free != zero.size()) {
+    throw std::invalid_argument("free_target has " + std::to_string(free) +
+                                " components, the scene has " + std::to_string(zero.size()));
   }
   measure_rates();
 }
@@ -135,6 +140,7 @@ std::vector<std::shared_ptr<const SteeringAnswer>> SteeringSearch::answers(
   const auto middle = question.ends.begin() + dynamics_.dof;
   BoundaryValueProblem problem(
       dynamics_, {question.ends.begin(), middle}, {middle, question.ends.end()}, options_.time);
+  problem.free_to = options_.free_target;
   std::vector<Image> images{{problem.to, {}}};
   const bool near = question.sense.contraction < 1;
   if (options_.mod_angles && !near) {
@@ -154,7 +160,7 @@ std::vector<std::shared_ptr<const SteeringAnswer>> SteeringSearch::answers(
       found = solve(problem, options, failure);
     }
     for (Geodesic& geodesic : found) {
-      list.push_back(answer_of(problem, std::move(geodesic)));
+      list.push_back(answer_of(std::move(geodesic)));
     }
     // Equal ones stay in the order of the images.
     std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) {
@@ -223,11 +229,12 @@ bool SteeringSearch::point(const SteeringAnswer& answer,
   leave_frame(dynamics_.info, origin.data(), z.data());
   turns.assign(n, 0.0);
   for (int j = 0; j < n; ++j) {
-    if (period_of(j) > 0) turns[j] = period_of(j) * std::round((z[j] - other[j]) / period_of(j));
+    if (period_of(j) > 0 && !rules().is_free(j))
+      turns[j] = period_of(j) * std::round((z[j] - other[j]) / period_of(j));
     if (sense.reversed) turns[j] = -turns[j];
   }
   if (t == 1) {
-    for (int j = 0; j < n; ++j) q[j] = to[j] + turns[j];
+    for (int j = 0; j < n; ++j) q[j] = rules().is_free(j) ? z[j] : to[j] + turns[j];
     return true;
   }
   if (!follow(answer, sense, sense.reversed ? 1 - t : t, z)) return false;

@@ -39,12 +39,16 @@ class SteeringSearch {
 
   [[nodiscard]] const Dynamics& dynamics() const { return dynamics_; }
   [[nodiscard]] const SteeringOptions& options() const { return options_; }
-  [[nodiscard]] bool reversible() const { return dynamics_.has_transcription(); }
+  // Whether a way back is as long as a way there.
+  [[nodiscard]] bool reversible() const {
+    return dynamics_.has_transcription() && options_.free_target.empty();
+  }
 
   // Why these cannot be joined at all; empty: they can.
   [[nodiscard]] std::string refusal(std::span<const double> from, std::span<const double> to) const;
   [[nodiscard]] SteeringRules rules() const {
-    return {reversible(), options_.mod_angles, options_.resolution};
+    const std::vector<bool>& free = options_.free_target;
+    return {reversible(), options_.mod_angles, options_.resolution, free.empty() ? nullptr : &free};
   }
   // Up to `count`, least action first; one without a geodesic where there is none.
   [[nodiscard]] std::vector<std::shared_ptr<const SteeringAnswer>> answers(
