@@ -52,7 +52,8 @@ OptionNames classified_options(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
     const bool flag = option->get_items_expected_max() == 0;
     for (const std::string& name : option->get_lnames()) {
-      auto& list = flag ? names.flags : name == "set" ? names.repeatable : names.valued;
+      const bool repeatable = name == "set" || name == "limit" || name == "disc";
+      auto& list = flag ? names.flags : repeatable ? names.repeatable : names.valued;
       list.push_back("--" + name);
     }
   }

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "carnot/language/nearest.h"
+#include "catalogue/limit_choice.h"
 #include "catalogue/scene_choice.h"
 #include "geodesic/geodesic_result.h"
 #include "run/subcommands.h"
@@ -30,6 +31,10 @@ flow-failed, not-joined, not-verified, beyond-double (round-off exceeds the tole
 --max-length); "message" says more and what to try.
 A coordinate of an end that is * is free: its momentum vanishes there. What was found is
 "from_found" and "to_found" in the JSON, the largest such momentum "transversality_error".
+With limits, "limits" in the JSON has the closest approach to each ("lowest_slack"), when the path
+keeps to it and its largest multiplier. "verification" is then "knots", or "grid" where only the path
+on the finest grid is known; "grid_error" says by how much its action may be wrong. Reasons are
+limit-at-end and limits-infeasible, too.
 Angles are radians; pi/2 and -3*pi/4 are numbers. Units are the scene's own: see
 `carnot scenes SCENE`.
 
@@ -37,6 +42,7 @@ Examples
   carnot geodesic vehicle --from 0,0,0,0 --to 0,1,0,0 --plot parking.png
   carnot geodesic vehicle --from -3,4,-pi/2,0 --to 0,0,0,0 --count 4 --json
   carnot geodesic vehicle --from 0,0,0,0 --to '0,1,0,*' --plot free_wheel.png
+  carnot geodesic vehicle --from 0,0,0,0 --to 0,1,0,0 --limit 'phi-theta in -0.3:0.3'
   carnot geodesic heisenberg-group --from 0,0,0 --to 1,0,0.2 --all --max-length 10 --output all.csv
 
 Exit status: 0 found (also when fewer than --count exist), 1 nothing converged, 2 bad input,
@@ -55,6 +61,8 @@ struct GeodesicCall {
   std::string minimiser = "newton";
   std::string guess;
   bool mod_angles = false;
+  std::vector<std::string> limits;
+  std::vector<std::string> discs;
 };
 
 std::string check_minimiser(const std::string& name) {
@@ -99,6 +107,11 @@ GeodesicRequest check(const GeodesicCall& options) {
   GeodesicRequest request;
   request.run = check(options.run);
   request.ends = parse_ends(options.from, options.to, options.time, request.run);
+  request.ends.limits = request.run.dynamics.info.limits;
+  if (!options.limits.empty() || !options.discs.empty()) {
+    request.ends.limits =
+        choose_limits(options.run.scene, request.run.parameters, options.limits, options.discs);
+  }
   request.options = check_search(options, request.run);
   return request;
 }
@@ -128,6 +141,12 @@ void add_search_options(CLI::App& app, GeodesicCall& options) {
       "newton, ceres, nlopt or nlopt:NAME, NAME one of slsqp, lbfgs, mlsl, isres, crs (newton)");
   add("--guess", options.guess, "P0", "momentum to start from instead");
   app.add_flag("--mod-angles", options.mod_angles, "angles agree modulo their periods");
+  app.add_option("--limit", options.limits, "keep an expression in a range (repeatable)")
+      ->type_name("'EXPR in A:B'")
+      ->allow_extra_args(false);
+  app.add_option("--disc", options.discs, "keep the body's points out of a disc (repeatable)")
+      ->type_name("X,Y,R")
+      ->allow_extra_args(false);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "carnot/plots/curves_of.h"
 #include "run/geodesic_text.h"
@@ -11,6 +12,20 @@
 
 namespace carnot::apps {
 namespace {
+
+Json limits_json(const Geodesic& geodesic) {
+  Json list = Json::array();
+  for (const LimitReport& limit : geodesic.limits) {
+    Json json;
+    json["name"] = limit.name;
+    json["lowest_slack"] = limit.lowest_slack;
+    json["active"] = Json::array();
+    for (const auto& [begin, end] : limit.active) json["active"].push_back({begin, end});
+    json["largest_multiplier"] = limit.largest_multiplier;
+    list.push_back(std::move(json));
+  }
+  return list;
+}
 
 Json geodesic_json(const Geodesic& geodesic,
                    const Ends& ends,
@@ -29,6 +44,10 @@ Json geodesic_json(const Geodesic& geodesic,
   json["hits"] = geodesic.hits;
   if (!geodesic.windings.empty()) json["windings"] = geodesic.windings;
   for (const auto& [name, value] : geodesic.extremes) json[name] = value;
+  if (!ends.limits.empty()) {
+    json["limits"] = limits_json(geodesic);
+    json["limit_violation"] = geodesic.limit_violation;
+  }
   if (with_trajectory) json["trajectory"] = trajectory_json(geodesic.trajectory);
   return json;
 }
@@ -63,15 +82,17 @@ std::string column_title(const Extreme& extreme) {
   return extreme.unit.empty() ? title : title + " [" + extreme.unit + "]";
 }
 
-std::vector<std::string> header_row(const SceneInfo& info) {
+std::vector<std::string> header_row(const SceneInfo& info, bool limited) {
   std::vector<std::string> row{"#", "action", "length", "error", "label"};
   for (const Extreme& extreme : info.extremes) row.push_back(column_title(extreme));
+  if (limited) row.emplace_back("slack");
   row.emplace_back("p0");
   return row;
 }
 
 std::vector<std::string> geodesic_row(const Geodesic& geodesic,
                                       const SceneInfo& info,
+                                      bool limited,
                                       std::size_t rank) {
   std::vector<std::string> row = geodesic_cells(geodesic);
   row.insert(row.begin(), std::to_string(rank));
@@ -82,16 +103,21 @@ std::vector<std::string> geodesic_row(const Geodesic& geodesic,
     }
     row.push_back(text);
   }
+  if (limited) {
+    double slack = std::numeric_limits<double>::infinity();
+    for (const LimitReport& limit : geodesic.limits) slack = std::min(slack, limit.lowest_slack);
+    row.push_back(text_number(slack, 2));
+  }
   row.push_back(text_vector(geodesic.p0, 8));
   return row;
 }
 
-std::string table(const GeodesicReport& report, const SceneInfo& info) {
+std::string table(const GeodesicReport& report, const SceneInfo& info, bool limited) {
   constexpr std::size_t kMostRows = 50;
   const std::size_t found = report.geodesics.size();
-  std::vector<std::vector<std::string>> rows{header_row(info)};
+  std::vector<std::vector<std::string>> rows{header_row(info, limited)};
   for (std::size_t i = 0; i < std::min(found, kMostRows); ++i) {
-    rows.push_back(geodesic_row(report.geodesics[i], info, i + 1));
+    rows.push_back(geodesic_row(report.geodesics[i], info, limited, i + 1));
   }
   const std::string text = text_table(rows);
   return found > kMostRows ? text + fmt::format("... {} more (see --json)\n", found - kMostRows)
@@ -109,7 +135,7 @@ std::string report_text(const GeodesicRequest& request, const GeodesicReport& re
                                  end_text(ends.from, ends.free_from),
                                  end_text(ends.to, ends.free_to),
                                  ends.time);
-  if (found > 0) text += '\n' + table(report, run.entry->info) + '\n';
+  if (found > 0) text += '\n' + table(report, run.entry->info, !ends.limits.empty()) + '\n';
   text += fmt::format("{} of {} starts converged, {}, {:.3g} s\n",
                       report.converged_starts,
                       report.starts,

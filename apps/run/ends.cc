@@ -54,7 +54,11 @@ Ends parse_ends(const std::string& from,
   if (to.empty()) refuse_missing("--to", end_accepted(names));
   const auto start = parse_end("--from", from, names);
   const auto target = parse_end("--to", to, names);
-  Ends ends{filled(start, target), filled(target, start), free_of(start), free_of(target)};
+  Ends ends;
+  ends.from = filled(start, target);
+  ends.to = filled(target, start);
+  ends.free_from = free_of(start);
+  ends.free_to = free_of(target);
   check_typed("--from", from, run, ends.from, ends.free_from);
   check_typed("--to", to, run, ends.to, ends.free_to);
   ends.time = parse_positive("--time", time);
@@ -82,6 +86,7 @@ BoundaryValueProblem problem_between(const Dynamics& dynamics, const Ends& ends)
   BoundaryValueProblem problem(dynamics, ends.from, ends.to, ends.time);
   problem.free_from = ends.free_from;
   problem.free_to = ends.free_to;
+  problem.limits = ends.limits;
   return problem;
 }
 

@@ -17,6 +17,7 @@ struct Ends {
   std::vector<bool> free_from;  // of length n
   std::vector<bool> free_to;
   double time = 1;
+  std::vector<Limit> limits;
 };
 
 // Of --from, --to and --time. Throws std::invalid_argument where one is missing, malformed,

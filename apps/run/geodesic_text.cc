@@ -31,13 +31,15 @@ Json problem_json(const std::vector<std::string>& arguments, const Run& run, con
 
 void add_extremal(const Geodesic& geodesic, const Ends& ends, Json& json) {
   const bool single = geodesic.verification == Verification::kSingle;
+  const bool knots = geodesic.verification == Verification::kKnots;
   json["p0"] = geodesic.p0;
   json["lambda0"] = geodesic.lambda0;
   json["action"] = geodesic.action;
   json["length"] = or_null(geodesic.length);
-  json["verification"] = single ? "single" : "knots";
+  json["verification"] = single ? "single" : knots ? "knots" : "grid";
   json["endpoint_error"] = single ? Json(geodesic.endpoint_error) : Json(nullptr);
-  json["knot_defect"] = single ? Json(nullptr) : Json(geodesic.knot_defect);
+  json["knot_defect"] = knots ? Json(geodesic.knot_defect) : Json(nullptr);
+  if (!single && !knots) json["grid_error"] = geodesic.grid_error;
   if (!has_free(ends)) return;
   json["from_found"] = geodesic.from;
   json["to_found"] = geodesic.to;
@@ -46,10 +48,15 @@ void add_extremal(const Geodesic& geodesic, const Ends& ends, Json& json) {
 
 std::vector<std::string> geodesic_cells(const Geodesic& geodesic) {
   const bool single = geodesic.verification == Verification::kSingle;
-  const double error = single ? geodesic.endpoint_error : geodesic.knot_defect;
+  const bool knots = geodesic.verification == Verification::kKnots;
+  const double error = single  ? geodesic.endpoint_error
+                       : knots ? geodesic.knot_defect
+                               : geodesic.grid_error;
   return {text_number(geodesic.action, 10),
           geodesic.length ? text_number(*geodesic.length, 10) : "-",
-          text_number(error, 2) + (single ? "" : " (knots)"),
+          text_number(error, 2) + (single  ? ""
+                                   : knots ? " (knots)"
+                                           : " (grid)"),
           name_of(geodesic.label)};
 }
 

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -22,10 +23,12 @@ struct TextScene::Impl {
   std::vector<TextParameter> parameters;
   std::shared_ptr<const language::TextSystem> system;
 
+  // With `held`, velocities keep the value of that limit.
   static std::shared_ptr<const Impl> read(const std::string& text,
                                           const std::string& name,
                                           const std::string& file,
-                                          const std::map<std::string, double>& values);
+                                          const std::map<std::string, double>& values,
+                                          std::optional<std::size_t> held = {});
   // All but the method.
   [[nodiscard]] Dynamics bind() const;
 };
@@ -56,8 +59,10 @@ std::shared_ptr<const TextScene::Impl> TextScene::Impl::read(
     const std::string& text,
     const std::string& name,
     const std::string& file,
-    const std::map<std::string, double>& values) {
-  const language::SceneSource source = language::read_scene(text, name, file, values);
+    const std::map<std::string, double>& values,
+    std::optional<std::size_t> held) {
+  language::SceneSource source = language::read_scene(text, name, file, values);
+  if (held) language::hold(source, *held);
   auto impl = std::make_shared<Impl>();
   impl->text = text;
   impl->name = name;
@@ -72,6 +77,14 @@ std::shared_ptr<const TextScene::Impl> TextScene::Impl::read(
     const Dynamics dynamics = impl->bind();
     language::check_text(source, formulation, dynamics, text, file);
     impl->info.symmetries = language::find_symmetries(dynamics);
+    const bool takes_rows = source.kinetic || source.mass || !source.controls.empty();
+    for (std::size_t i = 0; i < impl->info.limits.size() && takes_rows && !held; ++i) {
+      impl->info.limits[i].held = [=] {
+        TextScene scene;
+        scene.impl_ = read(text, name, file, values, i);
+        return make_dynamics(scene);
+      };
+    }
   } catch (const language::TooLarge&) {
     language::refuse_text(text, file, {1, 1}, "the formulas are too large");
   } catch (const language::NotFinite&) {

@@ -47,10 +47,16 @@ Geodesic best(const BoundaryValueProblem& problem, const std::string& minimiser 
 void expect_transversal(const BoundaryValueProblem& problem, const Geodesic& geodesic) {
   const Trajectory& path = geodesic.trajectory;
   for (int j = 0; j < problem.dynamics.dof; ++j) {
-    if (problem.is_free_from(j)) EXPECT_EQ(path.p.front()[j], 0) << j;
-    if (problem.is_free_to(j)) EXPECT_NEAR(path.p.back()[j], 0, kSolved) << j;
-    if (!problem.is_free_from(j)) EXPECT_EQ(geodesic.from[j], problem.from[j]) << j;
-    if (!problem.is_free_to(j)) EXPECT_EQ(geodesic.to[j], problem.to[j]) << j;
+    if (problem.is_free_from(j)) {
+      EXPECT_EQ(path.p.front()[j], 0) << j;
+    } else {
+      EXPECT_EQ(geodesic.from[j], problem.from[j]) << j;
+    }
+    if (problem.is_free_to(j)) {
+      EXPECT_NEAR(path.p.back()[j], 0, kSolved) << j;
+    } else {
+      EXPECT_EQ(geodesic.to[j], problem.to[j]) << j;
+    }
     EXPECT_NEAR(path.q.front()[j], geodesic.from[j], kSolved) << j;
     EXPECT_NEAR(path.q.back()[j], geodesic.to[j], kSolved) << j;
   }

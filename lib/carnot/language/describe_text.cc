@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <optional>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -117,6 +119,29 @@ void draw_in_space(const SceneSource& scene, Drawing& drawing) {
   };
 }
 
+Limit limit_of(const SceneSource& scene, const LimitSource& source) {
+  const int n = scene.dof();
+  Graph& graph = *scene.graph;
+  std::vector<Expression> all{source.value};
+  for (int i = 0; i < n; ++i) {
+    all.push_back(graph.derivative(source.value, kConfiguration.first + i));
+  }
+  for (int i = 0; i < n * n; ++i) {
+    all.push_back(graph.derivative(all[1 + i / n], kConfiguration.first + i % n));
+  }
+  Limit limit;
+  limit.name = source.name;
+  limit.lower = source.lower;
+  limit.upper = source.upper;
+  limit.value = [of = numbers(scene, all), n](const double* q, double* gradient, double* hessian) {
+    const std::vector<double> values = of.at(q);
+    if (gradient != nullptr) std::copy_n(values.begin() + 1, n, gradient);
+    if (hessian != nullptr) std::copy_n(values.begin() + 1 + n, n * n, hessian);
+    return values[0];
+  };
+  return limit;
+}
+
 Drawing drawing_of(const SceneSource& scene, const std::vector<Coordinate>& coordinates) {
   Drawing drawing;
   const std::vector<int> axes = places(coordinates);
@@ -184,7 +209,77 @@ SceneInfo describe_text(const SceneSource& scene, const Formulation& formulation
     info.extremes.push_back(
         {"largest_" + report.name, report.unit, [of](const double* q) { return of.at(q)[0]; }});
   }
+  for (const LimitSource& limit : scene.limits) info.limits.push_back(limit_of(scene, limit));
   return info;
+}
+
+namespace {
+
+// With controls that enter linearly, the rate of the limit is r + a.u. Two of them and no drift are
+// replaced by one, u = w (-a_2, a_1), which is regular wherever a is; otherwise one control is that
+// which the others leave.
+void hold_controls(SceneSource& scene, const LimitSource& limit) {
+  Graph& graph = *scene.graph;
+  const auto m = static_cast<int>(scene.controls.size());
+  Expression rate = graph.number(0);
+  for (int i = 0; i < scene.dof(); ++i) {
+    const Expression by_i = graph.derivative(limit.value, kConfiguration.first + i);
+    const std::optional<Formula>& velocity = scene.dynamics.at(i);
+    if (velocity) rate = rate + by_i * velocity->expression;
+  }
+  std::vector<Expression> a;
+  for (int j = 0; j < m; ++j) {
+    a.push_back(graph.derivative(rate, kAlgebraic.first + j));
+    if (graph.depends(a.back(), kAlgebraic.first, m)) {
+      throw std::invalid_argument("controls that do not enter linearly cannot be held on a limit");
+    }
+  }
+  const std::vector<Expression> still(m, graph.number(0));
+  const Expression drift = graph.substitute(rate, kAlgebraic.first, still);
+  std::vector<Expression> u;
+  if (m == 2 && drift.is_zero()) {
+    const Expression w = graph.variable(kAlgebraic.first);
+    u = {-a[1] * w, a[0] * w};
+  } else {
+    const auto constant = std::find_if(
+        a.begin(), a.end(), [](const Expression& e) { return e.is_constant() && !e.is_zero(); });
+    const auto some =
+        std::find_if(a.begin(), a.end(), [](const Expression& e) { return !e.is_zero(); });
+    const auto pivot = constant != a.end() ? constant : some;
+    if (pivot == a.end()) throw std::invalid_argument("no control moves what is limited");
+    Expression rest = drift;
+    for (int j = 0, next = 0; j < m; ++j) {
+      if (j == pivot - a.begin()) {
+        u.push_back(graph.number(0));
+        continue;
+      }
+      u.push_back(graph.variable(kAlgebraic.first + next++));
+      rest = rest + a[j] * u.back();
+    }
+    u[pivot - a.begin()] = -rest / *pivot;
+  }
+  for (std::optional<Formula>& velocity : scene.dynamics) {
+    if (velocity)
+      velocity->expression = graph.substitute(velocity->expression, kAlgebraic.first, u);
+  }
+  if (scene.cost)
+    scene.cost->expression = graph.substitute(scene.cost->expression, kAlgebraic.first, u);
+  scene.controls.pop_back();
+  scene.guess.clear();
+}
+
+}  // namespace
+
+void hold(SceneSource& scene, std::size_t index) {
+  const LimitSource& limit = scene.limits[index];
+  if (!scene.controls.empty()) return hold_controls(scene, limit);
+  Graph& graph = *scene.graph;
+  Expression rate = graph.number(0);
+  for (int i = 0; i < scene.dof(); ++i) {
+    rate = rate + graph.derivative(limit.value, kConfiguration.first + i) *
+                      graph.variable(kVelocity.first + i);
+  }
+  scene.rows.push_back({rate, limit.place});
 }
 
 }  // namespace carnot::language

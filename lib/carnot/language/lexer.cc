@@ -95,7 +95,7 @@ class Lexer {
   }
 
   bool mark() {
-    constexpr std::array<std::string_view, 3> kPairs{"--", "->", ">="};
+    constexpr std::array<std::string_view, 4> kPairs{"--", "->", ">=", "<="};
     constexpr std::string_view kMarks = "+-*/^'()[],;:=><";
     for (const std::string_view pair : kPairs) {
       if (text_.substr(at_, 2) == pair) {

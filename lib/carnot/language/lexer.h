@@ -13,7 +13,7 @@ struct Token {
   enum class Kind {
     kName,
     kNumber,
-    kMark,     // one of + - * / ^ ' ( ) [ ] , ; : = > <, or --, ->, >=
+    kMark,     // one of + - * / ^ ' ( ) [ ] , ; : = > <, or --, ->, >=, <=
     kText,     // "..."
     kLineEnd,  // of a statement: none inside brackets
     kEnd,

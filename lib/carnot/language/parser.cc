@@ -21,10 +21,10 @@ constexpr int kMostNesting = 200;
 constexpr std::size_t kMostItems = 200;  // parameters, rows, drawn lines, ...
 
 constexpr std::array kKeywords{
-    "coordinates", "parameters", "controls",    "let",       "kinetic", "mass",
-    "potential",   "lagrangian", "hamiltonian", "structure", "basis",   "cost",
-    "chart",       "guess",      "symmetry",    "period",    "draw",    "path",
-    "report",      "name",       "summary",     "reference", "limit"};
+    "coordinates", "parameters",  "controls",  "let",   "kinetic", "mass",  "potential",
+    "lagrangian",  "hamiltonian", "structure", "basis", "cost",    "chart", "guess",
+    "symmetry",    "period",      "draw",      "path",  "report",  "name",  "summary",
+    "reference",   "limit",       "point",     "disc"};
 
 // Functions that people look for, and why they are not there.
 struct Refused {
@@ -102,6 +102,7 @@ class Parser {
     if (scene_.coordinates.empty()) {
       fail({1, 1}, "there are no coordinates; accepted: a line such as coordinates x, y [length]");
     }
+    add_discs();
     for (const auto& setting : settings_) {
       const bool known = std::any_of(scene_.parameters.begin(),
                                      scene_.parameters.end(),
@@ -170,12 +171,14 @@ class Parser {
     if (names_.size() > kMostItems) fail(name.place, "there are too many names");
   }
 
-  int coordinate(const Token& name) const {
+  // The number of the coordinate of that name, or -1.
+  int numbered(const std::string& name) const {
     for (int i = 0; i < scene_.dof(); ++i) {
-      if (scene_.coordinates[i].name == name.text) return i;
+      if (scene_.coordinates[i].name == name) return i;
     }
     return -1;
   }
+  int coordinate(const Token& name) const { return numbered(name.text); }
 
   int expect_coordinate() {
     const Token name = expect_name("the name of a coordinate");
@@ -432,6 +435,8 @@ class Parser {
           {"summary", &Parser::scene_summary},
           {"reference", &Parser::scene_reference},
           {"limit", &Parser::limit},
+          {"point", &Parser::body_point},
+          {"disc", &Parser::disc},
           {"guess", &Parser::guess},
           {"coordinate", &Parser::coordinates},
           {"parameter", &Parser::parameters},
@@ -509,7 +514,7 @@ class Parser {
            "'" + now().text + "' begins no statement" + suggestion(now().text, words) +
                "; accepted: coordinates, parameters, controls, let, kinetic, mass, "
                "potential, lagrangian, hamiltonian, structure, cost, an equation, symmetry, "
-               "period, draw, path, report");
+               "period, limit, point, disc, draw, path, report");
     }
     const Expression left = expression();
     expect("=", "in an equation");
@@ -753,7 +758,101 @@ class Parser {
     knows_momenta_ = false;
   }
 
-  void limit() { fail(last().place, "limits are not part of the language yet"); }
+  // limit -0.6 < phi - theta < 0.6 "steering": one bound or two, with <, <=, > or >=.
+  void limit() {
+    const Place place = now().place;
+    std::vector<Expression> sides{expression()};
+    std::vector<bool> rises;
+    while (is_mark("<") || is_mark("<=") || is_mark(">") || is_mark(">=")) {
+      rises.push_back(now().text[0] == '<');
+      ++at_;
+      sides.push_back(expression());
+    }
+    if (rises.empty()) unexpected("'<' or '>' and a bound");
+    if (sides.size() > 3) fail(place, "a limit has at most two bounds");
+    LimitSource limit;
+    limit.place = place;
+    limit.lower = -std::numeric_limits<double>::infinity();
+    limit.upper = std::numeric_limits<double>::infinity();
+    std::size_t middle = sides.size() == 3 || sides[0].is_constant() ? 1 : 0;
+    if (sides.size() == 2 && !sides[1 - middle].is_constant()) {  // a < b is b - a > 0
+      sides[0] = sides[0] - sides[1];
+      sides[1] = scene_.graph->number(0);
+    }
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      if (i == middle) continue;
+      if (!sides[i].is_constant()) fail(place, "a bound is a constant");
+      const bool below = (i < middle) == rises[std::min(i, middle)];
+      (below ? limit.lower : limit.upper) = sides[i].coefficient;
+    }
+    if (sides.size() == 3 && rises[0] != rises[1]) fail(place, "both bounds are on one side");
+    limit.value = sides[middle];
+    only_configuration(limit.value, place);
+    if (limit.value.is_constant()) fail(place, "what is limited depends on no coordinate");
+    if (!(limit.lower < limit.upper)) fail(place, "the lower bound is not below the upper one");
+    const bool named = now().kind == Token::Kind::kText;
+    limit.name = named ? tokens_[at_++].text : "limit " + std::to_string(scene_.limits.size() + 1);
+    scene_.limits.push_back(std::move(limit));
+    if (scene_.limits.size() > kMostItems) fail(place, "there are too many limits");
+  }
+
+  // point front = (x, y)
+  void body_point() {
+    const Token name = expect_name("a name for the point");
+    expect("=", "after the name");
+    PointSource named{name.text, point()};
+    if (named.at.size() != 2) fail(name.place, "a point of the body is in the plane");
+    scene_.points.push_back(std::move(named));
+    if (scene_.points.size() > kMostItems) fail(name.place, "there are too many points");
+  }
+
+  // disc (a, b), r: the named points stay out of it.
+  void disc() {
+    Disc disc;
+    disc.place = now().place;
+    disc.centre = point();
+    expect(",", "between the centre and the radius");
+    disc.radius = constant("the radius");
+    const bool fixed =
+        disc.centre.size() == 2 && disc.centre[0].is_constant() && disc.centre[1].is_constant();
+    if (!fixed || !(disc.radius > 0)) {
+      fail(disc.place, "a disc is (a, b), r with constants and r > 0");
+    }
+    discs_.push_back(std::move(disc));
+    if (discs_.size() > kMostItems) fail(discs_.back().place, "there are too many discs");
+  }
+
+  // The distance of every point from every disc, as (d^2 - r^2) / (2 r): it has the same bound and
+  // the same slope there, and is smooth everywhere.
+  void add_discs() {
+    std::vector<PointSource> points = scene_.points;
+    if (!discs_.empty() && points.empty()) {
+      const int x = numbered("x");
+      const int y = numbered("y");
+      if (x < 0 || y < 0)
+        fail(discs_[0].place, "a disc needs points; accepted: point NAME = (.., ..)");
+      Graph& graph = *scene_.graph;
+      points.push_back(
+          {"(x, y)",
+           {graph.variable(kConfiguration.first + x), graph.variable(kConfiguration.first + y)}});
+    }
+    int number = 0;
+    for (const Disc& disc : discs_) {
+      ++number;
+      for (const PointSource& of : points) {
+        const Expression dx = of.at[0] - disc.centre[0];
+        const Expression dy = of.at[1] - disc.centre[1];
+        const Expression square = dx * dx + dy * dy;
+        LimitSource limit;
+        limit.name = "disc " + std::to_string(number) + ", " + of.name;
+        limit.value = 0.5 / disc.radius * square;
+        limit.lower = 0.5 * disc.radius;
+        limit.upper = std::numeric_limits<double>::infinity();
+        limit.place = disc.place;
+        scene_.limits.push_back(std::move(limit));
+      }
+    }
+  }
 
   // The rest of the line, in quotes or as it is.
   std::string text() {
@@ -771,6 +870,12 @@ class Parser {
   void scene_summary() { scene_.summary = text(); }
   void scene_reference() { scene_.reference = text(); }
 
+  struct Disc {
+    std::vector<Expression> centre;
+    double radius = 0;
+    Place place;
+  };
+
   std::string_view text_;
   const std::string& file_;
   const ParameterSettings& settings_;
@@ -780,6 +885,7 @@ class Parser {
   int nesting_ = 0;
   bool knows_momenta_ = false;
   std::map<std::string, Expression> names_;
+  std::vector<Disc> discs_;
 };
 
 }  // namespace

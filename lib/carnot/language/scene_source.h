@@ -66,6 +66,21 @@ struct ReportSource {
   Expression value;
 };
 
+// lower <= value <= upper.
+struct LimitSource {
+  std::string name;
+  Expression value;
+  double lower = 0;
+  double upper = 0;
+  Place place;
+};
+
+// A point of the body in the plane, which discs keep away from.
+struct PointSource {
+  std::string name;
+  std::vector<Expression> at;
+};
+
 struct SceneSource {
   std::unique_ptr<Graph> graph;
   std::string name;
@@ -90,6 +105,8 @@ struct SceneSource {
   std::vector<DrawingSource> drawing;
   std::vector<ReportSource> reports;
   std::optional<std::vector<Expression>> path;  // the point that is drawn
+  std::vector<LimitSource> limits;
+  std::vector<PointSource> points;
 
   [[nodiscard]] int dof() const { return static_cast<int>(coordinates.size()); }
 };

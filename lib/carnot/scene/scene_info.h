@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "carnot/scene/limit.h"
+
 namespace carnot {
 
 struct Coordinate {
@@ -112,6 +114,7 @@ struct SceneInfo {
   Symmetries symmetries;
   Drawing drawing;
   std::vector<Extreme> extremes;
+  std::vector<Limit> limits;
 };
 
 template <class Scene>

@@ -21,6 +21,8 @@ struct BoundaryValueProblem {
   // search begins to look for such a coordinate.
   std::vector<bool> free_from;
   std::vector<bool> free_to;
+  // What the path has to keep to; at first that of the scene.
+  std::vector<Limit> limits;
 
   // make_dynamics.h makes a Dynamics of a scene.
   BoundaryValueProblem(Dynamics system,
@@ -30,7 +32,8 @@ struct BoundaryValueProblem {
       : dynamics(std::move(system)),
         from(std::move(start)),
         to(std::move(target)),
-        time(duration) {}
+        time(duration),
+        limits(dynamics.info.limits) {}
 
   [[nodiscard]] bool is_free_from(int j) const { return !free_from.empty() && free_from[j]; }
   [[nodiscard]] bool is_free_to(int j) const { return !free_to.empty() && free_to[j]; }

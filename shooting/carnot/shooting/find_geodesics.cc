@@ -14,6 +14,7 @@
 #include "carnot/shooting/problem/origin.h"
 #include "carnot/shooting/problem/windings.h"
 #include "carnot/shooting/search/failure.h"
+#include "carnot/shooting/search/limited_search.h"
 #include "carnot/shooting/search/search.h"
 #include "carnot/shooting/shoot/multiple_shooting.h"
 
@@ -120,32 +121,8 @@ void search_image(const GeodesicOptions& options, Found& found) {
   }
 }
 
-}  // namespace
-
-std::vector<std::string> minimisers() { return names_of_minimisers(); }
-
-void GeodesicOptions::validate(const BoundaryValueProblem& problem) const {
-  const auto require = [](bool ok, const std::string& what) {
-    if (!ok) throw std::invalid_argument(what);
-  };
-  require(count >= 1, "count is " + std::to_string(count) + ", must be >= 1");
-  require(starts >= 0, "starts is " + std::to_string(starts) + ", must be >= 0");
-  require(threads >= 0, "threads is " + std::to_string(threads) + ", must be >= 0");
-  require(samples >= 0, "samples is " + std::to_string(samples) + ", must be >= 0");
-  require(tolerance > 0 && std::isfinite(tolerance),
-          "tolerance is " + std::to_string(tolerance) + ", must be > 0");
-  require(max_length > 0, "max_length is " + std::to_string(max_length) + ", must be > 0");
-  const std::vector<std::string> known = minimisers();
-  require(std::find(known.begin(), known.end(), minimiser) != known.end(),
-          "minimiser " + minimiser + " is unknown");
-  require(guess.empty() || static_cast<int>(guess.size()) == problem.dynamics.dof,
-          "guess has " + std::to_string(guess.size()) + " components, the scene has " +
-              std::to_string(problem.dynamics.dof));
-}
-
-GeodesicReport find_geodesics(const BoundaryValueProblem& asked, const GeodesicOptions& options) {
-  asked.validate();
-  options.validate(asked);
+GeodesicReport find_without_limits(const BoundaryValueProblem& asked,
+                                   const GeodesicOptions& options) {
   const auto began = std::chrono::steady_clock::now();
   GeodesicReport report;
   const BoundaryValueProblem problem = at_origin(asked);
@@ -189,6 +166,110 @@ GeodesicReport find_geodesics(const BoundaryValueProblem& asked, const GeodesicO
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - began;
   report.elapsed_seconds = elapsed.count();
   return report;
+}
+
+// The least of what each image of the target gives, where limits are kept to.
+GeodesicReport find_with_limits(const BoundaryValueProblem& asked, const GeodesicOptions& options) {
+  constexpr std::size_t kImages = 4;
+  constexpr int kFewStarts = 12;
+  const auto began = std::chrono::steady_clock::now();
+  GeodesicReport report;
+  report.message = beyond_limit_at_end(asked);
+  if (!report.message.empty()) {
+    report.reason = Reason::kLimitAtEnd;
+    return report;
+  }
+  BoundaryValueProblem problem = asked;
+  problem.limits.clear();
+  // A few starts tell whether the least action is beyond a limit. Only where it is not must it be
+  // known for sure: then it is the answer.
+  GeodesicOptions few = options;
+  if (options.starts == 0 && options.guess.empty()) few.starts = kFewStarts;
+  report = find_without_limits(problem, few);
+  const bool keeps = !report.geodesics.empty() && is_within_limits(asked, report.geodesics.front());
+  if (few.starts != options.starts && report.status != GeodesicStatus::kInterrupted && keeps) {
+    report = find_without_limits(problem, options);
+  }
+  if (report.status == GeodesicStatus::kInterrupted) return report;
+  std::vector<Image> images{{asked.to, {}}};
+  if (options.mod_angles) images = images_of_target(asked, options.max_length);
+  if (images.size() > kImages) images.resize(kImages);
+  const std::vector<Geodesic> known = std::exchange(report.geodesics, {});
+  report.missed_estimate.reset();  // it counts extremals without limits
+  report.reason = Reason::kNone;
+  problem.limits = asked.limits;
+  bool finished = true;
+  for (const Image& image : images) {
+    problem.to = image.to;
+    std::vector<Geodesic> of_image;
+    for (const Geodesic& geodesic : known) {
+      if (geodesic.windings == image.windings) of_image.push_back(geodesic);
+    }
+    LimitedAnswer answer = search_with_limits(problem, options, of_image);
+    finished = answer.finished;
+    report.starts += answer.starts;
+    report.converged_starts += answer.converged;
+    for (Geodesic& geodesic : answer.geodesics) {
+      geodesic.windings = image.windings;
+      report.geodesics.push_back(std::move(geodesic));
+    }
+    if (report.reason == Reason::kNone) {
+      report.reason = answer.reason;
+      report.message = answer.message;
+    }
+    if (!finished) break;
+  }
+  std::stable_sort(report.geodesics.begin(), report.geodesics.end(), [](auto& a, auto& b) {
+    return a.action < b.action;
+  });
+  if (!options.all && report.geodesics.size() > static_cast<std::size_t>(options.count)) {
+    report.geodesics.resize(options.count);
+  }
+  const bool found = !report.geodesics.empty();
+  report.distinct_hit = static_cast<int>(report.geodesics.size());
+  report.status = found ? GeodesicStatus::kConverged : GeodesicStatus::kNotConverged;
+  if (found) {
+    report.reason = Reason::kNone;
+    report.message.clear();
+  }
+  if (!finished) {
+    report.status = GeodesicStatus::kInterrupted;
+    report.reason = Reason::kInterrupted;
+    report.message = "interrupted";
+  }
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - began;
+  report.elapsed_seconds = elapsed.count();
+  return report;
+}
+
+}  // namespace
+
+std::vector<std::string> minimisers() { return names_of_minimisers(); }
+
+void GeodesicOptions::validate(const BoundaryValueProblem& problem) const {
+  const auto require = [](bool ok, const std::string& what) {
+    if (!ok) throw std::invalid_argument(what);
+  };
+  require(count >= 1, "count is " + std::to_string(count) + ", must be >= 1");
+  require(starts >= 0, "starts is " + std::to_string(starts) + ", must be >= 0");
+  require(threads >= 0, "threads is " + std::to_string(threads) + ", must be >= 0");
+  require(samples >= 0, "samples is " + std::to_string(samples) + ", must be >= 0");
+  require(tolerance > 0 && std::isfinite(tolerance),
+          "tolerance is " + std::to_string(tolerance) + ", must be > 0");
+  require(max_length > 0, "max_length is " + std::to_string(max_length) + ", must be > 0");
+  const std::vector<std::string> known = minimisers();
+  require(std::find(known.begin(), known.end(), minimiser) != known.end(),
+          "minimiser " + minimiser + " is unknown");
+  require(guess.empty() || static_cast<int>(guess.size()) == problem.dynamics.dof,
+          "guess has " + std::to_string(guess.size()) + " components, the scene has " +
+              std::to_string(problem.dynamics.dof));
+}
+
+GeodesicReport find_geodesics(const BoundaryValueProblem& problem, const GeodesicOptions& options) {
+  problem.validate();
+  options.validate(problem);
+  return problem.limits.empty() ? find_without_limits(problem, options)
+                                : find_with_limits(problem, options);
 }
 
 }  // namespace carnot

@@ -10,8 +10,18 @@
 
 namespace carnot {
 
-enum class Verification { kSingle, kKnots };
+// kSingle: one integration from p0. kKnots: piece by piece. kGrid: no integration keeps to a limit
+// there; the path is that of the grid.
+enum class Verification { kSingle, kKnots, kGrid };
 enum class Label { kLocallyMinimal, kConjugatePassed, kSingular, kUnknown };
+
+// How a path keeps to a limit.
+struct LimitReport {
+  std::string name;
+  double lowest_slack = 0;                        // the closest approach; negative beyond the limit
+  std::vector<std::pair<double, double>> active;  // when the path keeps to it
+  double largest_multiplier = 0;                  // action per time and unit of the limited value
+};
 
 // An extremal that joins the two configurations, checked.
 struct Geodesic {
@@ -32,6 +42,9 @@ struct Geodesic {
   std::optional<bool> abnormal;  // if known
   std::optional<int> morse_index;
   std::optional<int> family_dimension;
+  std::vector<LimitReport> limits;  // in the order of the problem
+  double limit_violation = 0;       // how far it is beyond one of them
+  double grid_error = 0;            // for kGrid: by how much the action may be wrong
   std::vector<std::pair<std::string, double>> extremes;  // e.g. largest_steering_angle
   StepPlan plan;                                         // steps of the verified integration
   int hits = 0;               // starts that led here or to a mirror partner

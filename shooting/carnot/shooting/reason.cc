@@ -10,6 +10,10 @@ const char* name_of(Reason reason) {
       return "interrupted";
     case Reason::kIrregularEnd:
       return "irregular-end";
+    case Reason::kLimitAtEnd:
+      return "limit-at-end";
+    case Reason::kLimitsInfeasible:
+      return "limits-infeasible";
     case Reason::kNoStartConverged:
       return "no-start-converged";
     case Reason::kSingularCoordinates:

@@ -8,6 +8,8 @@ enum class Reason {
   kNone,                 // there is one
   kInterrupted,          // the caller stopped the search
   kIrregularEnd,         // refused: an end is no regular configuration
+  kLimitAtEnd,           // refused: an end is beyond a limit
+  kLimitsInfeasible,     // no path was found that keeps to the limits
   kNoStartConverged,     // no start led to a discrete extremal or, from momenta, to knots that join
   kSingularCoordinates,  // the same, and most met a singularity of the coordinates
   kGuessFailed,          // the guess did not lead to knots that join

@@ -33,6 +33,11 @@ class DiscreteEquations {
     return place >= 0 && place < inner() && place % (n_ + k_) < k_;
   }
 
+  // The unknown that coordinate j of a node is; -1 where it is fixed.
+  [[nodiscard]] int of_node(int node, int j) const {
+    return node < intervals_ ? unknown(node, j) : unknown(node - 1, n_ + j);
+  }
+
   // What stands for the second derivatives of sum F_d by the nodes: a combination of themselves and
   // of B. B = sum h J'J with J = dr/dq is made of those of the kinetic energy, without the
   // curvature of its terms. It is positive definite where the constraints leave the nodes free.

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "carnot/shooting/linear/chain_least_squares.h"
+#include "carnot/shooting/problem/walls.h"
 
 namespace carnot::internal {
 namespace {
@@ -17,10 +18,13 @@ struct Transcription {
   double ceiling;  // c > V; used where the scene has a potential
   bool potential;
   bool walled;  // the path is in one chart, and kept there
+  const Walls& walls;
+  const RelaxationOptions& options;
 
-  [[nodiscard]] int residuals() const {
+  [[nodiscard]] int terms() const {
     return dynamics.dof + dynamics.transcribed + (potential ? 1 : 0);
   }
+  [[nodiscard]] int residuals() const { return terms() + walls.size(); }
 };
 
 // Residuals sqrt(h) r, sqrt(h rho) (G v - lambda / rho) and, with a potential, sqrt(2 h (c - V)) of
@@ -32,7 +36,9 @@ class Interval {
         qm_(shared.dynamics.dof),
         v_(shared.dynamics.dof),
         terms_(shared.dynamics.dof + shared.dynamics.transcribed + 1),
-        derivative_(terms_.size() * 2 * shared.dynamics.dof) {}
+        derivative_(terms_.size() * 2 * shared.dynamics.dof),
+        s_(shared.walls.size()),
+        gradients_(s_.size() * shared.dynamics.dof) {}
 
   // At the nodes q, 2n numbers; see chain_least_squares.h.
   bool evaluate(const double* lambda, const double* q, double* residuals, double* jacobian) {
@@ -44,7 +50,7 @@ class Interval {
     }
     const auto derivative = jacobian != nullptr ? derivative_ : std::span<double>();
     if (!shared_.dynamics.midpoint(qm_, v_, terms_, derivative)) return false;
-    for (int row = 0; row < shared_.residuals(); ++row) {
+    for (int row = 0; row < shared_.terms(); ++row) {
       const double weight = scale(row, lambda, residuals);
       if (!std::isfinite(weight) || !std::isfinite(residuals[row])) return false;
       if (jacobian == nullptr) continue;
@@ -57,6 +63,7 @@ class Interval {
         to[n + i] = by_q + by_v;
       }
     }
+    if (shared_.walls.size() > 0) add_walls(residuals, jacobian);
     return true;
   }
 
@@ -78,11 +85,32 @@ class Interval {
     return -shared_.h / residuals[row];
   }
 
+  // The last residuals: what is beyond each wall.
+  void add_walls(double* residuals, double* jacobian) {
+    const int n = shared_.dynamics.dof;
+    shared_.walls.evaluate(
+        qm_.data(), s_.data(), jacobian != nullptr ? gradients_.data() : nullptr, nullptr);
+    for (int w = 0; w < shared_.walls.size(); ++w) {
+      const int row = shared_.terms() + w;
+      const double weight =
+          std::sqrt(shared_.h * shared_.options.wall_rate) / shared_.options.wall_sizes[w];
+      const bool beyond = s_[w] < 0;
+      residuals[row] = beyond ? weight * s_[w] : 0;
+      if (jacobian == nullptr) continue;
+      double* to = jacobian + row * 2 * n;
+      for (int i = 0; i < n; ++i) {
+        to[i] = to[n + i] = beyond ? 0.5 * weight * gradients_[w * n + i] : 0;
+      }
+    }
+  }
+
   const Transcription& shared_;
   std::vector<double> qm_;
   std::vector<double> v_;
   std::vector<double> terms_;
   std::vector<double> derivative_;
+  std::vector<double> s_;
+  std::vector<double> gradients_;
 };
 
 // Reads the terms of all intervals of a path.
@@ -139,12 +167,15 @@ Relaxation relax(const BoundaryValueProblem& problem,
   const double h = problem.time / path.intervals;
   PathTerms state = terms_of(dynamics, h, path);
   const double spread = 1 + std::abs(state.max_potential);
+  const Walls walls(problem.limits, dynamics.dof);
   Transcription shared{dynamics,
                        h,
                        options.penalty * state.mass,
                        state.max_potential + spread,
                        state.potential,
-                       in_one_chart(dynamics, path)};
+                       in_one_chart(dynamics, path),
+                       walls,
+                       options};
   path.lambda.resize(static_cast<std::size_t>(path.intervals) * dynamics.transcribed, 0.0);
   std::vector<double>& lambda = path.lambda;
 

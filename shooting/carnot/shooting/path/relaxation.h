@@ -8,8 +8,11 @@
 // Each inner problem is a sum of squares on a chain of nodes (chain_least_squares.h). At the
 // solution lambda are the multipliers, and -D1 F_d is the momentum, of the midpoint rule itself
 // (lib: midpoint_transcription.h), so that shooting starts from a discrete extremal. A potential
-// enters as sqrt(2 (c - V)) with c above V along the path.
+// enters as sqrt(2 (c - V)) with c above V along the path. What is beyond a wall of a limit
+// (walls.h) costs rate (s / size)^2 / 2, for s < 0.
 #pragma once
+
+#include <vector>
 
 #include "carnot/shooting/boundary_value_problem.h"
 #include "carnot/shooting/path/path.h"
@@ -22,6 +25,9 @@ struct RelaxationOptions {
   double penalty = 10;        // rho relative to the mass
   double caution = 1e-4;      // first damping: larger keeps to the valley where the path starts
   double feasibility = 1e-3;  // |G v| / |v| at which to stop
+  // With limits: the rate of action of a path that is beyond a wall by one of these sizes.
+  double wall_rate = 0;
+  std::vector<double> wall_sizes;
 };
 
 struct Relaxation {

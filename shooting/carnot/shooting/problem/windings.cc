@@ -17,8 +17,8 @@ std::vector<Image> images_of_target(const BoundaryValueProblem& problem, double 
   std::vector<Image> images{{problem.to, std::vector<int>(n, 0)}};
   for (std::size_t j = 0; j < n; ++j) {
     const double period = coordinates[j].period;
-    const int k = static_cast<int>(j);
-    if (!(period > 0) || problem.is_free_from(k) || problem.is_free_to(k)) continue;
+    const auto at = static_cast<int>(j);
+    if (!(period > 0) || problem.is_free_from(at) || problem.is_free_to(at)) continue;
     double reach = 1;
     if (std::isfinite(max_length)) reach = std::max(reach, max_length * per_metre[j] / period);
     reach = std::min(reach, kMostTurns) + kSlack;

@@ -1,0 +1,32 @@
+// Limits on configurations: a function of q that stays between two bounds.
+//
+// A steering angle that ends, a trailer that must not jackknife, an obstacle. Scenes from text have
+// `limit` and `disc`; make_limit.h makes one in C++.
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <string>
+
+namespace carnot {
+
+struct Dynamics;
+
+struct Limit {
+  std::string name;
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+  // The function at q (length n) and, unless null, its gradient (n) and second derivatives (n x n,
+  // row-major). Safe to call from many threads.
+  std::function<double(const double* q, double* gradient, double* hessian)> value;
+  // The scene with its velocities kept along the surfaces where the function is constant, for arcs
+  // on a bound: one more velocity constraint. Empty where there is none; throws
+  // std::invalid_argument where velocities cannot be kept so.
+  std::function<Dynamics()> held{};
+
+  // How far from the nearer bound the value is; negative beyond it.
+  [[nodiscard]] double slack(double of) const { return std::min(of - lower, upper - of); }
+};
+
+}  // namespace carnot
