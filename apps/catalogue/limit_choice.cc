@@ -22,8 +22,9 @@ std::string trimmed(const std::string& text) {
   return text.substr(begin, text.find_last_not_of(' ') - begin + 1);
 }
 
-// The statement of the scene language that says the same. What is typed stays on its line.
-std::string limit_statement(const std::string& text) {
+// Statements of the scene language that say the same. What is typed stays on its line, and is one
+// formula there.
+std::string limit_statements(const std::string& text, std::size_t number) {
   const bool strange = std::any_of(text.begin(), text.end(), [](char c) {
     return static_cast<unsigned char>(c) < ' ' || c == '"' || c == '#';
   });
@@ -40,9 +41,10 @@ std::string limit_statement(const std::string& text) {
   const std::string lower = trimmed(range.substr(0, colon));
   const std::string upper = trimmed(range.substr(colon + 1));
   if (lower.empty() && upper.empty()) refuse("--limit", text, "has no bound", kLimitAccepted);
-  std::string statement = "limit ";
+  const std::string name = fmt::format("limited_{}", number);
+  std::string statement = fmt::format("let {} = {}\nlimit ", name, expression);
   if (!lower.empty()) statement += fmt::format("{:.17g} < ", parse_real("--limit", lower));
-  statement += "(" + expression + ")";
+  statement += name;
   if (!upper.empty()) statement += fmt::format(" < {:.17g}", parse_real("--limit", upper));
   return statement + " \"" + expression + "\"";
 }
@@ -83,7 +85,9 @@ std::vector<Limit> choose_limits(const std::string& scene,
           fmt::format("{} '{}': {}", option, asked, complaint(error.what())));
     }
   };
-  for (const std::string& limit : limits) add("--limit", limit, limit_statement(limit));
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    add("--limit", limits[i], limit_statements(limits[i], i + 1));
+  }
   for (const std::string& disc : discs) add("--disc", disc, disc_statement(disc));
   std::map<std::string, double> values;
   for (const TextParameter& parameter : known.parameters()) {

@@ -164,6 +164,55 @@ TEST(GeodesicCommand, TakesFreeEnds) {
   EXPECT_EQ(run(parking({"--json"})).json()["geodesics"][0].count("to_found"), 0);
 }
 
+TEST(GeodesicCommand, KeepsToLimits) {
+  const Words limits{"--limit", "phi-theta in -0.3:0.3", "--limit", "x in :5", "--disc", "9,9,1"};
+  const Outcome table = run(parking(limits));
+  ASSERT_EQ(table.status, 0) << table.err;
+  EXPECT_THAT(table.out, HasSubstr("slack"));
+  EXPECT_THAT(table.out, HasSubstr("(knots)"));
+  const auto json = run(parking(with(limits, {"--json"}))).json();
+  const auto& geodesic = json["geodesics"][0];
+  EXPECT_NEAR(geodesic["action"], 23.275244006, 1e-8);
+  EXPECT_EQ(geodesic["verification"], "knots");
+  EXPECT_LE(geodesic["limit_violation"], 1e-10);
+  const auto& list = geodesic["limits"];
+  ASSERT_EQ(list.size(), 5);  // two limits, and three points of the body beside the disc
+  EXPECT_EQ(list[0]["name"], "phi-theta");
+  EXPECT_EQ(list[0]["active"].size(), 4);
+  EXPECT_GT(list[0]["largest_multiplier"], 0);
+  EXPECT_EQ(list[1]["name"], "x");
+  EXPECT_GT(list[1]["lowest_slack"], 0);
+  EXPECT_EQ(list[2]["name"], "disc 1, front");
+  EXPECT_EQ(list[4]["name"], "disc 1, rear");
+  EXPECT_TRUE(list[4]["active"].empty());
+}
+
+TEST(GeodesicCommand, RefusesLimitsThatAreNone) {
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {"phi in :", "has no bound"},
+      {"phi in 1", "is no range of an expression"},
+      {" in 0:1", "is no range of an expression"},
+      {"ph in 0:1", "'ph' is not known"},
+      {"phi in 1:0", "not below the upper one"},
+      {"phi in a:1", "not a finite number"},
+      {"2 in 0:1", "depends on no coordinate"},
+      {"phi) + (x in 0:1", "expected"},
+      {"phi\nlimit x in 0:1", "a character that no formula has"}};
+  for (const auto& [limit, expected] : cases) {
+    const Outcome outcome = run(parking({"--limit", limit}));
+    EXPECT_EQ(outcome.status, 2) << limit;
+    EXPECT_THAT(outcome.err, HasSubstr(expected)) << limit;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  }
+}
+
+TEST(GeodesicCommand, SaysWhichLimitCannotBeKept) {
+  const Outcome end = run(parking({"--limit", "y in 0.5:", "--json"}));
+  EXPECT_EQ(end.status, 1);
+  EXPECT_EQ(end.json()["reason"], "limit-at-end");
+  EXPECT_THAT(end.err, HasSubstr("the start is beyond the limit 'y' by 0.5"));
+}
+
 TEST(GeodesicCommand, DoesNotDependOnThreads) {
   const auto answer = [](const char* threads) {
     auto json = run(parking({"--json", "--threads", threads, "--seed", "7"})).json();

@@ -131,7 +131,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"draw_point", with("draw (x, y)"), "4:12", "'--' and another point"},
         Case{"wheel", with("draw wheel((x, y), theta)"), "4:6", "heading, radius"},
         Case{"period", with("period theta = -1"), "4:16", "a period is positive"},
-        Case{"limit", with("limit theta in -1:1"), "4:1", "not part of the language yet"},
+        Case{"limit", with("limit theta in -1:1"), "4:13", "'in' is not known"},
         Case{"number", with("let a = 1e999"), "4:9", "'1e999' is not part"},
         Case{"quote", with("summary \"open"), "4:9", "'\"' is not part"}),
     [](const auto& name) { return name.param.what; });

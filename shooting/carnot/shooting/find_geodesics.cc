@@ -219,9 +219,7 @@ GeodesicReport find_with_limits(const BoundaryValueProblem& asked, const Geodesi
     }
     if (!finished) break;
   }
-  std::stable_sort(report.geodesics.begin(), report.geodesics.end(), [](auto& a, auto& b) {
-    return a.action < b.action;
-  });
+  rank(report.geodesics);
   if (!options.all && report.geodesics.size() > static_cast<std::size_t>(options.count)) {
     report.geodesics.resize(options.count);
   }

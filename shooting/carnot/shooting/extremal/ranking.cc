@@ -6,24 +6,35 @@
 
 namespace carnot::internal {
 
-void rank(std::vector<Extremal>& list) {
-  std::stable_sort(list.begin(), list.end(), [](const Extremal& a, const Extremal& b) {
-    return a.geodesic.action < b.geodesic.action;
+namespace {
+
+const Geodesic& geodesic_of(const Extremal& extremal) { return extremal.geodesic; }
+const Geodesic& geodesic_of(const Geodesic& geodesic) { return geodesic; }
+
+template <class Item>
+void rank_items(std::vector<Item>& list) {
+  std::stable_sort(list.begin(), list.end(), [](const Item& a, const Item& b) {
+    return geodesic_of(a).action < geodesic_of(b).action;
   });
   for (auto first = list.begin(); first != list.end();) {
-    const double action = first->geodesic.action;
-    const auto last = std::find_if(first, list.end(), [&](const Extremal& extremal) {
-      return extremal.geodesic.action - action > kSameAction * std::abs(action);
+    const double action = geodesic_of(*first).action;
+    const auto last = std::find_if(first, list.end(), [&](const Item& item) {
+      return geodesic_of(item).action - action > kSameAction * std::abs(action);
     });
-    std::sort(first, last, [](const Extremal& a, const Extremal& b) {
+    std::sort(first, last, [](const Item& a, const Item& b) {
       const auto key = [](const Geodesic& g) {
         return std::tie(g.verification, g.p0);  // kSingle is first
       };
-      return key(a.geodesic) < key(b.geodesic);
+      return key(geodesic_of(a)) < key(geodesic_of(b));
     });
     first = last;
   }
 }
+
+}  // namespace
+
+void rank(std::vector<Extremal>& list) { rank_items(list); }
+void rank(std::vector<Geodesic>& list) { rank_items(list); }
 
 double missed_estimate(const std::vector<int>& hits) {
   const auto once = static_cast<double>(std::count(hits.begin(), hits.end(), 1));

@@ -10,6 +10,7 @@ namespace carnot::internal {
 // Least action first; equal ones in the order of p0, not of round-off, and those that need knots
 // last.
 void rank(std::vector<Extremal>& list);
+void rank(std::vector<Geodesic>& list);
 
 // How many distinct extremals, up to symmetry, the starts have missed, by how often those found
 // were hit: f1^2 / (2 f2) with f_k the number of those hit k times, f1 (f1 - 1) / 2 where f2 = 0. A

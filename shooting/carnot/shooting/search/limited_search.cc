@@ -11,6 +11,7 @@
 
 #include "carnot/numerics/parallel.h"
 #include "carnot/shooting/extremal/classification.h"
+#include "carnot/shooting/extremal/ranking.h"
 #include "carnot/shooting/extremal/verification.h"
 #include "carnot/shooting/path/interior_point.h"
 #include "carnot/shooting/path/path_lagrangian.h"
@@ -70,7 +71,7 @@ class LimitedSearch {
   [[nodiscard]] std::optional<Geodesic> within(const Geodesic& geodesic) const;
 
  private:
-  [[nodiscard]] bool keeps_to_limits(const Geodesic& geodesic) const;
+  [[nodiscard]] bool keeps_to_limits(const Geodesic& geodesic, double beyond = kBeyond) const;
   void set_sizes();
   [[nodiscard]] std::optional<Path> path_along(const Geodesic& geodesic, int intervals) const;
   void draw_in(Path& path) const;
@@ -79,6 +80,7 @@ class LimitedSearch {
   [[nodiscard]] std::optional<Candidate> solve(Path path) const;
   void note(std::optional<Candidate> candidate);
   [[nodiscard]] bool refine(Candidate& candidate, double last_mu) const;
+  [[nodiscard]] bool settle(Candidate& candidate) const;
   [[nodiscard]] std::optional<Geodesic> finish(Candidate candidate) const;
   [[nodiscard]] std::optional<Geodesic> joined(const Candidate& candidate) const;
   [[nodiscard]] std::optional<Geodesic> by_flow(const BoundExtremal& extremal) const;
@@ -164,7 +166,7 @@ void LimitedSearch::set_sizes() {
   interior_.rate = action > 0 ? action / problem_.time : 1;
 }
 
-bool LimitedSearch::keeps_to_limits(const Geodesic& geodesic) const {
+bool LimitedSearch::keeps_to_limits(const Geodesic& geodesic, double beyond) const {
   for (const LimitReport& limit : geodesic.limits) {
     double size = std::numeric_limits<double>::infinity();
     for (int w = 0; w < walls_.size(); ++w) {
@@ -172,7 +174,7 @@ bool LimitedSearch::keeps_to_limits(const Geodesic& geodesic) const {
         size = std::min(size, interior_.sizes[w]);
       }
     }
-    if (!(limit.lowest_slack >= -kBeyond * size)) return false;
+    if (!(limit.lowest_slack >= -beyond * size)) return false;
   }
   return true;
 }
@@ -477,7 +479,18 @@ Geodesic LimitedSearch::on_grid(const Candidate& candidate, double coarse_action
   for (int i = 0; i <= path.intervals; ++i) {
     nodes.emplace_back(path.configuration(i), path.configuration(i) + n);
   }
-  report_limits(nodes, geodesic);
+  // Between the nodes, too: a path could step over a wall.
+  constexpr int kBetween = 4;
+  std::vector<std::vector<double>> points;
+  for (int i = 0; i < path.intervals; ++i) {
+    for (int part = 0; part < kBetween; ++part) {
+      const double share = static_cast<double>(part) / kBetween;
+      points.push_back(nodes[i]);
+      for (int j = 0; j < n; ++j) points.back()[j] += share * (nodes[i + 1][j] - nodes[i][j]);
+    }
+  }
+  points.push_back(nodes.back());
+  report_limits(points, geodesic);
   for (int w = 0; w < m; ++w) {
     LimitReport& limit = geodesic.limits[walls_[w].limit];
     for (int i = 0; i <= path.intervals; ++i) {
@@ -537,20 +550,31 @@ std::optional<Geodesic> LimitedSearch::finish(Candidate candidate) const {
   // mu on grids of 2, 4, ... times the first one. Contacts are told from the second of them in
   // nearly all cases.
   constexpr std::array kMu{3e-4, 1e-4, 1e-5, 1e-7};
-  constexpr double kLeastMu = 1e-9;
-  double coarse_action = candidate.action;
+  constexpr double kBeyondOnGrid = 1e-4;  // between two nodes
+  Candidate coarse;
   for (std::size_t level = 0; level < kMu.size(); ++level) {
-    coarse_action = candidate.action;
+    coarse = candidate;
     if (!refine(candidate, kMu[level])) return std::nullopt;
     if (level == 0) continue;
     if (auto geodesic = joined(candidate)) return geodesic;
   }
+  if (!settle(coarse) || !settle(candidate)) return std::nullopt;
+  Geodesic geodesic = on_grid(candidate, coarse.action);
+  if (!keeps_to_limits(geodesic, kBeyondOnGrid)) return std::nullopt;
+  return geodesic;
+}
+
+// With the least mu, on the same grid.
+bool LimitedSearch::settle(Candidate& candidate) const {
+  constexpr double kLeastMu = 1e-9;
   InteriorPointOptions options = interior_;
   options.first_mu = candidate.mu;
   options.last_mu = kLeastMu;
-  if (!interior_point(problem_, walls_, options, candidate.limited).converged) return std::nullopt;
-  Geodesic geodesic = on_grid(candidate, coarse_action);
-  return keeps_to_limits(geodesic) ? std::optional(std::move(geodesic)) : std::nullopt;
+  if (!interior_point(problem_, walls_, options, candidate.limited).converged) return false;
+  candidate.mu = kLeastMu;
+  candidate.action = discrete_action(
+      problem_.dynamics, problem_.time / candidate.limited.path.intervals, candidate.limited.path);
+  return true;
 }
 
 bool LimitedSearch::enough() const {
@@ -655,9 +679,7 @@ LimitedAnswer LimitedSearch::run() {
     if (enough()) finish_candidates(threads, answer.geodesics);
   }
   finish_candidates(threads, answer.geodesics);
-  std::stable_sort(answer.geodesics.begin(), answer.geodesics.end(), [](auto& a, auto& b) {
-    return a.action < b.action;
-  });
+  rank(answer.geodesics);
   if (!options_.all && answer.geodesics.size() > static_cast<std::size_t>(options_.count)) {
     answer.geodesics.resize(options_.count);
   }

@@ -1,0 +1,261 @@
+// Geodesics with limits and obstacles: closed forms, one route against another, and what cannot be.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "carnot/make_limit.h"
+#include "carnot/shooting/find_geodesics.h"
+#include "carnot/shooting/path/interior_point.h"
+#include "carnot/shooting/path/refinement.h"
+#include "carnot/shooting/shoot/bound_arcs.h"
+#include "shooting/drift_problems.h"
+#include "shooting/problems.h"
+
+namespace carnot::internal::limited_geodesics_test {
+namespace {
+
+using ::testing::HasSubstr;
+
+// Sideways parking with |phi - theta| <= 0.3, as a direct method and the exact arcs of an earlier
+// program agree on it.
+constexpr double kParking = 23.275244006;
+constexpr double kViolation = 1e-10;
+
+// A scene of the program from its text, with more lines.
+Dynamics program_scene(const std::string& name, const std::string& lines) {
+  const std::string path = CARNOT_SOURCE_DIR "/lib/carnot/scenes/" + name + ".scene";
+  return test::from_text(load_scene(path).text() + "\n" + lines);
+}
+
+BoundaryValueProblem parking(const std::string& limits) {
+  return {program_scene("vehicle", limits), {0, 0, 0, 0}, {0, 1, 0, 0}};
+}
+
+GeodesicReport solve(const BoundaryValueProblem& problem, int count = 1, int threads = 0) {
+  GeodesicOptions options;
+  options.count = count;
+  options.threads = threads;
+  return find_geodesics(problem, options);
+}
+
+Geodesic best(const BoundaryValueProblem& problem) {
+  const GeodesicReport report = solve(problem);
+  EXPECT_EQ(report.status, GeodesicStatus::kConverged) << report.message;
+  return report.geodesics.empty() ? Geodesic{} : report.geodesics.front();
+}
+
+// The samples keep to the limits, and the path ends where it should.
+void expect_kept(const BoundaryValueProblem& problem, const Geodesic& geodesic) {
+  EXPECT_LE(geodesic.limit_violation, kViolation);
+  ASSERT_EQ(geodesic.limits.size(), problem.limits.size());
+  for (const auto& q : geodesic.trajectory.q) {
+    for (const Limit& limit : problem.limits) {
+      EXPECT_GE(limit.slack(limit.value(q.data(), nullptr, nullptr)), -kViolation) << limit.name;
+    }
+  }
+  for (int j = 0; j < problem.dynamics.dof; ++j) {
+    if (problem.is_free_to(j)) continue;
+    EXPECT_NEAR(geodesic.trajectory.q.back()[j], problem.to[j], 1e-9);
+  }
+}
+
+TEST(LimitedGeodesics, ParkWithAWheelThatTurnsLittle) {
+  const BoundaryValueProblem problem = parking("limit -0.3 < phi - theta < 0.3 \"steering\"\n");
+  const Geodesic geodesic = best(problem);
+  EXPECT_NEAR(geodesic.action, kParking, 1e-9 * kParking);
+  EXPECT_EQ(geodesic.verification, Verification::kKnots);
+  EXPECT_LE(geodesic.knot_defect, 1e-10);
+  EXPECT_EQ(geodesic.label, Label::kLocallyMinimal);
+  expect_kept(problem, geodesic);
+  const LimitReport& limit = geodesic.limits[0];
+  EXPECT_EQ(limit.name, "steering");
+  EXPECT_EQ(limit.active.size(), 4U);
+  EXPECT_GT(limit.largest_multiplier, 0);
+  EXPECT_NEAR(geodesic.extremes.at(0).second, 0.3, kViolation);
+  for (const auto& [begin, end] : limit.active) EXPECT_LT(begin, end);
+}
+
+TEST(LimitedGeodesics, AreAsBeforeWhereNoLimitIsReached) {
+  const Geodesic free = best(parking(""));
+  const Geodesic wide = best(parking("limit -0.5 < phi - theta < 0.5\n"));
+  EXPECT_EQ(wide.action, free.action);
+  EXPECT_EQ(wide.p0, free.p0);
+  EXPECT_EQ(wide.trajectory.q, free.trajectory.q);
+  EXPECT_EQ(wide.conjugate_times, free.conjugate_times);
+  EXPECT_NEAR(wide.limits.at(0).lowest_slack, 0.5 - free.extremes.at(0).second, 1e-4);
+  EXPECT_TRUE(wide.limits.at(0).active.empty());
+}
+
+TEST(LimitedGeodesics, DoNotDependOnThreads) {
+  const BoundaryValueProblem problem = parking("limit -0.3 < phi - theta < 0.3\n");
+  const GeodesicReport one = solve(problem, 2, 1);
+  const GeodesicReport three = solve(problem, 2, 3);
+  ASSERT_EQ(one.geodesics.size(), 2U);
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(one.geodesics[i].p0, three.geodesics.at(i).p0);
+}
+
+// Two limits that share the mirror symmetry of the problem leave its partners the same action; one
+// does not.
+TEST(LimitedGeodesics, ShareTheMirrorSymmetryOfTheirLimitsOnly) {
+  const GeodesicReport both = solve(parking("limit -0.3 < phi - theta < 0.3\n"), 2);
+  ASSERT_EQ(both.geodesics.size(), 2U);
+  EXPECT_NEAR(both.geodesics[0].action, both.geodesics[1].action, 1e-9);
+  const GeodesicReport left = solve(parking("limit phi - theta > -0.3\n"), 2);
+  const GeodesicReport right = solve(parking("limit phi - theta < 0.3\n"), 2);
+  ASSERT_EQ(left.geodesics.size(), 2U);
+  EXPECT_GT(left.geodesics[1].action, left.geodesics[0].action + 1e-3);
+  EXPECT_NEAR(left.geodesics[0].action, right.geodesics.at(0).action, 1e-9);
+}
+
+// More freedom never costs more: a wider limit, a free end.
+TEST(LimitedGeodesics, CostLessWithMoreFreedom) {
+  double last = std::numeric_limits<double>::infinity();
+  for (const char* limit : {"0.25", "0.3", "0.35", "0.4", "0.45"}) {
+    const std::string line = std::string("limit -") + limit + " < phi - theta < " + limit + "\n";
+    BoundaryValueProblem problem = parking(line);
+    const double action = best(problem).action;
+    EXPECT_LT(action, last) << limit;
+    last = action;
+    problem.free_to = {false, false, false, true};
+    const Geodesic free = best(problem);
+    EXPECT_LE(free.action, action);
+    expect_kept(problem, free);
+    EXPECT_LE(free.transversality_error, 1e-9);
+  }
+}
+
+// The same problem on the grid, extrapolated: another route to the same action.
+TEST(LimitedGeodesics, AgreeWithTheirGrid) {
+  const BoundaryValueProblem problem = parking("limit -0.3 < phi - theta < 0.3\n");
+  // The limit from C++ has no arcs, so its answer is that of the grid.
+  BoundaryValueProblem direct = problem;
+  direct.limits = {make_limit<4>(
+      "steering", [](const auto& q) { return q[3] - q[2]; }, -0.3, 0.3)};
+  const Geodesic geodesic = best(direct);
+  EXPECT_EQ(geodesic.verification, Verification::kGrid);
+  EXPECT_NEAR(geodesic.action, kParking, 1e-6);
+  EXPECT_LE(std::abs(geodesic.action - kParking), geodesic.grid_error);
+  EXPECT_LE(geodesic.limit_violation, kViolation);
+}
+
+// Bryson & Denham: x'' = u, x <= l, from rise to fall at unit speed. Without contact 2, at a point
+// of contact 2 + 6 (1 - 4 l)^2, along the wall 4 / (9 l).
+TEST(LimitedGeodesics, SolveTheProblemOfBrysonAndDenham) {
+  const auto problem = [](double l) {
+    std::string text = "coordinates x, v\ncontrols u\nx' = v\nv' = u\ncost = u^2 / 2\n";
+    text += "limit x < " + std::to_string(l) + "\n";
+    return BoundaryValueProblem(test::from_text(text), {0, 1}, {0, -1}, 1);
+  };
+  EXPECT_NEAR(best(problem(0.3)).action, 2, 1e-9);
+  const Geodesic touch = best(problem(0.2));
+  EXPECT_NEAR(touch.action, 2.24, 1e-9);
+  ASSERT_EQ(touch.limits.at(0).active.size(), 1U);
+  EXPECT_NEAR(touch.limits[0].active[0].first, 0.5, 1e-9);
+  const Geodesic along = best(problem(0.125));
+  EXPECT_NEAR(along.action, 4 / (9 * 0.125), 1e-9);
+  ASSERT_EQ(along.limits.at(0).active.size(), 2U);
+  EXPECT_NEAR(along.limits[0].active[0].first, 3 * 0.125, 1e-7);
+  EXPECT_NEAR(along.limits[0].active[1].first, 1 - 3 * 0.125, 1e-7);
+  EXPECT_LE(along.limit_violation, kViolation);
+}
+
+// Round a disc on either side; straight across its middle both ways are the same.
+TEST(LimitedGeodesics, PassADiscOnBothSides) {
+  const auto round = [](const std::string& centre) {
+    const Dynamics dynamics = program_scene("unicycle", "disc (" + centre + "), 0.5\n");
+    return BoundaryValueProblem(dynamics, {0, 0, 0}, {4, 0, 0});
+  };
+  const GeodesicReport even = solve(round("2, 0"), 2);
+  ASSERT_EQ(even.geodesics.size(), 2U);
+  EXPECT_NEAR(even.geodesics[0].action, even.geodesics[1].action, 1e-9);
+  const GeodesicReport uneven = solve(round("2, 0.1"), 2);
+  ASSERT_EQ(uneven.geodesics.size(), 2U);
+  EXPECT_GT(uneven.geodesics[1].action, uneven.geodesics[0].action + 1);
+  // By symmetry the path touches the disc below its middle, and p jumps across it there.
+  const Geodesic& below = uneven.geodesics[0];
+  expect_kept(round("2, 0.1"), below);
+  ASSERT_EQ(below.limits.at(0).active.size(), 1U);
+  EXPECT_NEAR(below.limits[0].active[0].first, 0.5, 1e-7);
+  EXPECT_NEAR(below.limits[0].lowest_slack, 0, kViolation);
+  const auto& p = below.trajectory.p;
+  EXPECT_NEAR(p.front()[0], p.back()[0], 1e-7);
+  EXPECT_NEAR(p.front()[1], -p.back()[1], 1e-7);
+}
+
+TEST(LimitedGeodesics, SolveRandomTargets) {
+  constexpr int kTargets = 12;
+  const Dynamics dynamics = program_scene("trailer1", "limit -0.5 < t0 - t1 < 0.5\n");
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> place(-2, 2);
+  std::uniform_real_distribution<double> hinge(-0.45, 0.45);
+  for (int i = 0; i < kTargets; ++i) {
+    std::vector<double> to{place(random), place(random), 0.7 * place(random), 0};
+    to[3] = to[2] + hinge(random);
+    const BoundaryValueProblem problem(dynamics, {0, 0, 0, 0}, to);
+    const Geodesic geodesic = best(problem);
+    EXPECT_NE(geodesic.verification, Verification::kGrid) << i;
+    expect_kept(problem, geodesic);
+  }
+}
+
+TEST(LimitedGeodesics, SayWhatCannotBe) {
+  const GeodesicReport outside = solve(parking("limit y > 0.2 \"kerb\"\n"));
+  EXPECT_EQ(outside.reason, Reason::kLimitAtEnd);
+  EXPECT_THAT(outside.message, HasSubstr("the start is beyond the limit 'kerb' by 0.2"));
+  const GeodesicReport target = solve(parking("limit y < 0.5\n"));
+  EXPECT_THAT(target.message, HasSubstr("the target is beyond"));
+  // A wall across the way.
+  const GeodesicReport closed = solve(parking("limit (y - 0.5)^2 > 0.01 \"wall\"\n"));
+  EXPECT_EQ(closed.status, GeodesicStatus::kNotConverged);
+  EXPECT_EQ(closed.reason, Reason::kLimitsInfeasible);
+  EXPECT_THAT(closed.message, HasSubstr("beyond 'wall'"));
+  EXPECT_TRUE(closed.geodesics.empty());
+  // A free coordinate may be moved within the limit, so the end itself is no obstacle.
+  BoundaryValueProblem free = parking("limit -0.3 < phi - theta < 0.3\n");
+  free.to[3] = 1;
+  free.free_to = {false, false, false, true};
+  EXPECT_EQ(best(free).limit_violation, std::max(0.0, best(free).limit_violation));
+}
+
+// Away from the solution Newton's method on the pieces converges quadratically: its derivatives are
+// right.
+TEST(BoundArcs, JoinQuadratically) {
+  const BoundaryValueProblem problem = parking("limit -0.3 < phi - theta < 0.3\n");
+  BoundaryValueProblem unlimited = problem;
+  unlimited.limits.clear();
+  const Geodesic free = best(unlimited);
+  const Walls walls(problem.limits, 4);
+  InteriorPointOptions options;
+  options.rate = free.action;
+  options.sizes.assign(walls.size(), 0.3);
+  options.last_mu = 1e-3;
+  LimitedPath limited;
+  const int intervals = 64;
+  limited.path = {intervals, 4, {}, std::vector<double>(2 * intervals, 0.0), {}};
+  GeodesicOptions sampled;
+  sampled.samples = intervals + 1;
+  const GeodesicReport report = find_geodesics(unlimited, sampled);
+  for (const auto& q : report.geodesics.at(0).trajectory.q) {
+    limited.path.q.insert(limited.path.q.end(), q.begin(), q.end());
+  }
+  const InteriorPoint solved = interior_point(problem, walls, options, limited);
+  ASSERT_TRUE(solved.converged);
+  EXPECT_TRUE(solved.minimum);
+  auto pieces = pieces_of(problem, walls, options, limited, Contacts::kArcs);
+  ASSERT_TRUE(pieces);
+  EXPECT_EQ(pieces->pieces.size(), 9U);
+  ASSERT_TRUE(join_pieces(problem, walls, 64, *pieces));
+  EXPECT_LE(pieces->residual, 1e-12);
+  const BoundSurvey measured = survey_pieces(problem, walls, *pieces, 128, {0, 0.5, 1});
+  ASSERT_TRUE(measured.completed);
+  EXPECT_NEAR(measured.summary.action, kParking, 1e-8);
+  EXPECT_EQ(measured.summary.trajectory.t.size(), 3U);
+  EXPECT_GE(measured.least_multiplier, 0);
+}
+
+}  // namespace
+}  // namespace carnot::internal::limited_geodesics_test
