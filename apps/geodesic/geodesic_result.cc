@@ -163,8 +163,10 @@ Result geodesic_result(const GeodesicRequest& request,
     return csv_text(dynamics.info, dynamics.multipliers, trajectories);
   };
   result.draw = [&](const std::string& file) {
+    SceneInfo info = dynamics.info;
+    info.limits = request.ends.limits;
     return plots::write_figure(
-        file, dynamics.info, plots::curves_of(report.geodesics), request.run.destination.figure);
+        file, info, plots::curves_of(report.geodesics), request.run.destination.figure);
   };
   return result;
 }

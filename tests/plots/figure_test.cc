@@ -47,6 +47,30 @@ TEST_F(FigureFile, NamesWhatItShows) {
   EXPECT_EQ(entries(), 1);
 }
 
+// A forbidden region, an arc and a touch, in every figure that has room for them.
+TEST_F(FigureFile, ShowsLimits) {
+  const Trajectory trajectory = wave(40);
+  Curve curve = curve_of(trajectory);
+  const double end = trajectory.t.back();
+  curve.on_limits = {{0.2 * end, 0.4 * end}, {0.7 * end, 0.7 * end}};
+  SceneInfo scene = plane_scene();
+  scene.limits.resize(1);
+  scene.limits[0].outline = {{0, 0}, {1, 0}, {0, 1}};
+  const std::string region = "rgb(216, 212, 206)";
+  const std::string band = "rgb(251, 230, 207)";
+  for (const Figure figure : {Figure::kPath, Figure::kTime, Figure::kOverview}) {
+    draw_silently(file("a.svg"), scene, {curve}, figure);
+    const std::string svg = contents(file("a.svg"));
+    EXPECT_EQ(svg.find(region) != std::string::npos, figure != Figure::kTime);
+    EXPECT_EQ(svg.find(band) != std::string::npos, figure != Figure::kPath);
+    if (figure == Figure::kPath) EXPECT_NE(svg.find("at a limit"), std::string::npos);
+  }
+  draw_silently(file("a.gif"), scene, {curve});
+  curve.on_limits.clear();
+  draw_silently(file("a.svg"), plane_scene(), {curve});
+  EXPECT_EQ(contents(file("a.svg")).find("at a limit"), std::string::npos);
+}
+
 TEST_F(FigureFile, EveryEndingWorksForEveryView) {
   const Trajectory trajectory = wave(40);
   for (const View view : {View::kPlane, View::kSpace, View::kTimeOnly}) {

@@ -849,6 +849,7 @@ class Parser {
         limit.lower = 0.5 * disc.radius;
         limit.upper = std::numeric_limits<double>::infinity();
         limit.place = disc.place;
+        limit.disc = {disc.centre[0].coefficient, disc.centre[1].coefficient, disc.radius};
         scene_.limits.push_back(std::move(limit));
       }
     }

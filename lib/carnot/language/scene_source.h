@@ -2,6 +2,7 @@
 // yet.
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
 #include <optional>
@@ -73,6 +74,7 @@ struct LimitSource {
   double lower = 0;
   double upper = 0;
   Place place;
+  std::optional<std::array<double, 3>> disc;  // centre and radius, where it keeps out of one
 };
 
 // A point of the body in the plane, which discs keep away from.

@@ -27,6 +27,11 @@ concept Extremal = requires(const E& extremal) {
   { extremal.extremes } -> std::convertible_to<const std::vector<std::pair<std::string, double>>&>;
 };
 
+template <class E>
+concept KeepsToLimits = requires(const E& extremal) {
+  extremal.limits.front().active;
+};
+
 // One curve for each, called "geodesic 1", "geodesic 2", .... The curves point at the trajectories
 // of `extremals`, which must live as long.
 template <Extremal E>
@@ -37,7 +42,14 @@ std::vector<Curve> curves_of(const std::vector<E>& extremals) {
                       &extremal.trajectory,
                       extremal.action,
                       extremal.length,
-                      extremal.extremes});
+                      extremal.extremes,
+                      {}});
+    if constexpr (KeepsToLimits<E>) {
+      for (const auto& limit : extremal.limits) {
+        auto& times = curves.back().on_limits;
+        times.insert(times.end(), limit.active.begin(), limit.active.end());
+      }
+    }
   }
   return curves;
 }

@@ -7,6 +7,7 @@
 namespace carnot::plots {
 namespace {
 
+const std::string kLimitColor = " lc rgb '#f0b070'";
 const std::string kWheelStyle = "with lines lw 1 dt (6,4) lc rgb '#8c8c8c'";
 
 // The bodies between start and goal.
@@ -40,6 +41,9 @@ std::vector<LegendEntry> path_legend(const SceneInfo& info,
   const std::size_t wheels = other_wheels(info, *curve.trajectory, frame).size();
   if (wheels > 0)
     entries.push_back({kWheelStyle, "", wheels == 1 ? "other wheel" : "other wheels"});
+  if (!curve.on_limits.empty()) {
+    entries.push_back({"with lines lw 6" + kLimitColor, "", "at a limit"});
+  }
   if (info.drawing.body && !info.drawing.glyph.empty()) {
     entries.push_back({"with lines lw 1.4 " + line_color_of(TimeColors::kMiddle),
                        "",
@@ -69,6 +73,9 @@ void draw_path(Script& script,
   plot.add(lines(some, Role::kBody, kVeil), style + width(1.4))
       .add(lines(some, Role::kWheel, 0), style + width(1.1));
   for (const Rows& track : other_wheels(info, trajectory, frame)) plot.add(track, kWheelStyle);
+  const Rows limits = limit_rows(info, curve, frame);
+  if (!limits.empty())
+    plot.add(limits, "using 1:2 with linespoints pt 7 ps 0.9" + kLimitColor + width(7));
   plot.add(path, "using 1:2:3 with lines lc palette" + width(2.4));
   const auto end = [&](std::size_t row, const std::string& mark, const char* color) {
     plot.add(lines({row}, Role::kBody, 0), style + width(2.4))

@@ -60,6 +60,12 @@ PlaneExtent::PlaneExtent(const SceneInfo& info,
                          const std::vector<Curve>& curves,
                          std::size_t bodies) {
   constexpr std::size_t kAllAlong = 90;
+  for (const Limit& limit : info.limits) {
+    for (const auto& corner : limit.outline) {
+      x.include(corner[0]);
+      y.include(corner[1]);
+    }
+  }
   for (const Curve& curve : curves) {
     const Trajectory& trajectory = *curve.trajectory;
     for (const auto& q : trajectory.q) {
@@ -146,6 +152,27 @@ std::vector<Rows> other_wheels(const SceneInfo& info,
   return others;
 }
 
+Rows limit_rows(const SceneInfo& info, const Curve& curve, const PlaneFrame& frame) {
+  const Rows path = path_rows(info, *curve.trajectory, frame);
+  Rows rows;
+  for (const auto& [begin, end] : curve.on_limits) {
+    // A touch is at the sample that is nearest to it.
+    std::size_t nearest = 0;
+    bool any = false;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      const double t = curve.trajectory->t[i];
+      const double middle = 0.5 * (begin + end);
+      if (std::abs(t - middle) < std::abs(curve.trajectory->t[nearest] - middle)) nearest = i;
+      if (t < begin || t > end) continue;
+      rows.push_back({path[i][0], path[i][1]});
+      any = true;
+    }
+    if (!any && !path.empty()) rows.push_back({path[nearest][0], path[nearest][1]});
+    rows.push_back(gap());
+  }
+  return rows;
+}
+
 void set_plane(Script& script,
                const Picture& page,
                const SceneInfo& info,
@@ -153,6 +180,17 @@ void set_plane(Script& script,
   const std::size_t i = axis_index(info, 0);
   const std::size_t j = axis_index(info, 1);
   set_box(script, page, frame.box);
+  script << "unset object\n";
+  for (const Limit& limit : info.limits) {
+    if (limit.outline.empty()) continue;
+    script << "set object polygon";
+    for (std::size_t corner = 0; corner <= limit.outline.size(); ++corner) {
+      const auto& point = limit.outline[corner % limit.outline.size()];
+      script << (corner == 0 ? " from " : " to ") << number(frame.x.at(point[0]), 9) << ","
+             << number(frame.y.at(point[1]), 9);
+    }
+    script << " behind fc rgb '#d8d4ce' fs solid 1 border rgb '#8a8378'\n";
+  }
   set_axis(script, "x", frame.x, frame.box.width, 62);
   set_axis(script, "y", frame.y, frame.box.height, 60);
   script << "set xlabel "

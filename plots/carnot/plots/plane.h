@@ -46,7 +46,9 @@ Rows path_rows(const SceneInfo& info, const Trajectory& trajectory, const PlaneF
 std::vector<Rows> other_wheels(const SceneInfo& info,
                                const Trajectory& trajectory,
                                const PlaneFrame& frame);
-// Axes, labels and grid of a panel in the plane.
+// Points (x, y) of the path where it keeps to a limit, a gap after each stretch.
+Rows limit_rows(const SceneInfo& info, const Curve& curve, const PlaneFrame& frame);
+// Axes, labels and grid of a panel in the plane, and the regions that limits forbid.
 void set_plane(Script& script, const Picture& page, const SceneInfo& info, const PlaneFrame& frame);
 
 }  // namespace carnot::plots

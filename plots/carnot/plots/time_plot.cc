@@ -22,6 +22,7 @@ struct TimePanel {
   Rows zeros;  // points near the lower edge
   Axis values{Interval{}};
   bool logarithmic = false;
+  std::vector<std::pair<double, double>> shaded;  // times at a limit
 };
 
 // Column i of q, p or lambda for each i.
@@ -100,6 +101,7 @@ std::vector<TimePanel> panels_of(const SceneInfo& info, const Curve& curve, cons
   if (on.multipliers && k > 0)
     panels.push_back(columns("λ", trajectory, trajectory.lambda, lambda));
   if (on.energy) panels.push_back(energy({curve}, {"|H − H(0)| [energy]"}));
+  for (TimePanel& panel : panels) panel.shaded = curve.on_limits;
   return panels;
 }
 
@@ -111,6 +113,12 @@ void draw(Script& script,
           bool bottom) {
   constexpr double kBesides = 14;
   set_box(script, page, box);
+  script << "unset object\n";
+  for (const auto& [begin, end] : panel.shaded) {
+    script << "set object rectangle from first " << number(times.at(begin), 9)
+           << ", graph 0 to first " << number(times.at(end), 9)
+           << ", graph 1 behind fc rgb '#fbe6cf' fs solid 1 border rgb '#f0b070'\n";
+  }
   set_axis(script, "x", times, box.width, 80);
   set_axis(script, "y", panel.values, box.height, 36);
   if (panel.logarithmic) {

@@ -52,15 +52,16 @@ class Method {
   void set_walls();
   void start();
   // Everything but the complementarity; the residual of the equations of the path in `residual_`.
-  double evaluate(bool with_matrix);
+  double evaluate(bool with_matrix, double metric = 0);
   [[nodiscard]] double complementarity() const;
   void add_walls();
   void eliminate(const std::vector<double>& direction);
   // The longest step that leaves x positive.
   [[nodiscard]] double longest(const std::vector<double>& x, const std::vector<double>& step) const;
   bool advance(const std::vector<double>& direction);
-  // Whether the matrix with the walls has as many negative eigenvalues as F_d has multipliers.
-  [[nodiscard]] bool is_minimum();
+  // Whether the matrix has as many negative eigenvalues as F_d has multipliers.
+  [[nodiscard]] bool has_right_inertia();
+  void assemble();
 
   const BoundaryValueProblem& problem_;
   const Walls& walls_;
@@ -105,8 +106,9 @@ void Method::start() {
   }
 }
 
-double Method::evaluate(bool with_matrix) {
-  scale_ = equations_.evaluate(limited_.path, residual_, with_matrix ? &matrix_ : nullptr);
+double Method::evaluate(bool with_matrix, double metric) {
+  scale_ =
+      equations_.evaluate(limited_.path, residual_, with_matrix ? &matrix_ : nullptr, {1, metric});
   double worst = 0;
   for (int node = 0; node < nodes_; ++node) {
     if (!moves(node)) continue;
@@ -192,9 +194,9 @@ double Method::longest(const std::vector<double>& x, const std::vector<double>& 
 
 bool Method::advance(const std::vector<double>& direction) {
   constexpr double kShortest = 1.0 / 64;
-  // A residual that grows more, and is not small, is of a step into nowhere. It must be let grow from
-  // round-off: for Bryson and Denham's problem, where mu was lowered after the equations had been
-  // solved, no step was good enough otherwise.
+  // A residual that grows more, and is not small, is of a step into nowhere. It must be let grow
+  // from round-off: for Bryson and Denham's problem, where mu was lowered after the equations had
+  // been solved, no step was good enough otherwise.
   constexpr double kWorse = 10;
   constexpr double kSmall = 1e-2;
   const double before = evaluate(false);
@@ -221,10 +223,8 @@ bool Method::advance(const std::vector<double>& direction) {
 // The multipliers' own block, which vanishes for velocity constraints, is shifted a little: the
 // matrix is quasi-definite then, and its inertia is that of the second derivatives where the
 // constraints leave the nodes free.
-bool Method::is_minimum() {
+bool Method::has_right_inertia() {
   constexpr double kShift = 1e-8;
-  evaluate(true);
-  add_walls();
   const int size = equations_.size();
   const int band = 2 * n_ + PathLagrangian::multipliers(problem_.dynamics) - 1;
   BandedLdlt symmetric(size, band);
@@ -233,8 +233,9 @@ bool Method::is_minimum() {
   for (int row = 0; row < size; ++row) {
     for (int column = row; column < std::min(size, row + band + 1); ++column) {
       symmetric(row, column) = matrix_(row, column);
-      if (equations_.is_multiplier(row))
+      if (equations_.is_multiplier(row)) {
         largest = std::max(largest, std::abs(matrix_(row, column)));
+      }
     }
   }
   for (int row = 0; row < size; ++row) {
@@ -245,6 +246,22 @@ bool Method::is_minimum() {
   return symmetric.factor() == multipliers;
 }
 
+// Sets the matrix with the walls. Where it is not that of a minimum multiples of the kinetic energy
+// are added, as in descent.h: Newton's method alone goes to and fro between nodes at which a wall
+// pins the path.
+void Method::assemble() {
+  constexpr double kFirst = 1e-2;
+  constexpr double kLast = 1e3;
+  constexpr double kFactor = 10;
+  evaluate(true);
+  add_walls();
+  if (!problem_.dynamics.has_transcription()) return;
+  for (double added = kFirst; added <= kLast && !has_right_inertia(); added *= kFactor) {
+    evaluate(true, added);
+    add_walls();
+  }
+}
+
 InteriorPoint Method::run() {
   constexpr double kMet = 10;  // times mu: then mu is lowered
   constexpr double kFactor = 0.2;
@@ -252,14 +269,16 @@ InteriorPoint Method::run() {
   InteriorPoint result;
   start();
   while (result.iterations < options_.max_iterations) {
-    const double worst = evaluate(true);
+    const double worst = evaluate(false);
     result.residual = std::max(worst, complementarity());
     result.mu = mu_;
     if (!std::isfinite(result.residual)) break;
     if (mu_ <= options_.last_mu && worst <= options_.tolerance &&
         complementarity() <= options_.last_mu) {
       result.converged = true;
-      result.minimum = is_minimum();
+      evaluate(true);
+      add_walls();
+      result.minimum = has_right_inertia();
       break;
     }
     if (result.residual <= kMet * mu_ && mu_ > options_.last_mu) {
@@ -267,7 +286,7 @@ InteriorPoint Method::run() {
       continue;
     }
     ++result.iterations;
-    add_walls();
+    assemble();
     if (!matrix_.factor()) break;
     std::vector<double> direction = residual_;
     matrix_.substitute(direction);

@@ -80,6 +80,7 @@ class LimitedSearch {
   [[nodiscard]] std::optional<Candidate> solve(Path path) const;
   void note(std::optional<Candidate> candidate);
   [[nodiscard]] bool refine(Candidate& candidate, double last_mu) const;
+  [[nodiscard]] static std::vector<std::vector<double>> points_along(const Path& path);
   [[nodiscard]] bool settle(Candidate& candidate) const;
   [[nodiscard]] std::optional<Geodesic> finish(Candidate candidate) const;
   [[nodiscard]] std::optional<Geodesic> joined(const Candidate& candidate) const;
@@ -448,7 +449,8 @@ std::optional<Geodesic> LimitedSearch::by_pieces(const BoundExtremal& extremal,
 }
 
 std::optional<Geodesic> LimitedSearch::joined(const Candidate& candidate) const {
-  for (const Contacts as : {Contacts::kArcs, Contacts::kTouches, Contacts::kPairs}) {
+  for (const Contacts as :
+       {Contacts::kByOrder, Contacts::kArcs, Contacts::kTouches, Contacts::kPairs}) {
     const auto pieces = pieces_of(problem_, walls_, interior_, candidate.limited, as);
     if (!pieces) continue;
     if (pieces->pieces.size() == 1) return by_flow(*pieces);
@@ -479,18 +481,7 @@ Geodesic LimitedSearch::on_grid(const Candidate& candidate, double coarse_action
   for (int i = 0; i <= path.intervals; ++i) {
     nodes.emplace_back(path.configuration(i), path.configuration(i) + n);
   }
-  // Between the nodes, too: a path could step over a wall.
-  constexpr int kBetween = 4;
-  std::vector<std::vector<double>> points;
-  for (int i = 0; i < path.intervals; ++i) {
-    for (int part = 0; part < kBetween; ++part) {
-      const double share = static_cast<double>(part) / kBetween;
-      points.push_back(nodes[i]);
-      for (int j = 0; j < n; ++j) points.back()[j] += share * (nodes[i + 1][j] - nodes[i][j]);
-    }
-  }
-  points.push_back(nodes.back());
-  report_limits(points, geodesic);
+  report_limits(points_along(path), geodesic);
   for (int w = 0; w < m; ++w) {
     LimitReport& limit = geodesic.limits[walls_[w].limit];
     for (int i = 0; i <= path.intervals; ++i) {
@@ -564,17 +555,51 @@ std::optional<Geodesic> LimitedSearch::finish(Candidate candidate) const {
   return geodesic;
 }
 
-// With the least mu, on the same grid.
+// With the least mu, on the same grid. Between nodes the straight line may be beyond a wall by the
+// square of an interval; then the walls are moved by that much.
 bool LimitedSearch::settle(Candidate& candidate) const {
   constexpr double kLeastMu = 1e-9;
+  constexpr double kMargin = 1.5;
+  constexpr int kRounds = 3;
   InteriorPointOptions options = interior_;
-  options.first_mu = candidate.mu;
   options.last_mu = kLeastMu;
-  if (!interior_point(problem_, walls_, options, candidate.limited).converged) return false;
-  candidate.mu = kLeastMu;
+  std::vector<Limit> limits = problem_.limits;
+  for (int round = 0; round < kRounds; ++round) {
+    options.first_mu = std::max(candidate.mu, kLeastMu);
+    const Walls walls(limits, problem_.dynamics.dof);
+    if (!interior_point(problem_, walls, options, candidate.limited).converged) return false;
+    candidate.mu = kLeastMu;
+    Geodesic judged;
+    report_limits(points_along(candidate.limited.path), judged);
+    if (!(judged.limit_violation > 0)) break;
+    for (std::size_t i = 0; i < limits.size(); ++i) {
+      const double beyond = std::max(0.0, -judged.limits[i].lowest_slack);
+      limits[i].lower += kMargin * beyond;
+      limits[i].upper -= kMargin * beyond;
+    }
+  }
   candidate.action = discrete_action(
       problem_.dynamics, problem_.time / candidate.limited.path.intervals, candidate.limited.path);
   return true;
+}
+
+// The nodes of a path, and points of the straight lines between them: a path could step over a
+// wall.
+std::vector<std::vector<double>> LimitedSearch::points_along(const Path& path) {
+  constexpr int kBetween = 4;
+  std::vector<std::vector<double>> points;
+  for (int i = 0; i < path.intervals; ++i) {
+    for (int part = 0; part < kBetween; ++part) {
+      const double share = static_cast<double>(part) / kBetween;
+      points.emplace_back(path.configuration(i), path.configuration(i + 1));
+      for (int j = 0; j < path.dof; ++j) {
+        points.back()[j] += share * (path.configuration(i + 1)[j] - path.configuration(i)[j]);
+      }
+    }
+  }
+  points.emplace_back(path.configuration(path.intervals),
+                      path.configuration(path.intervals) + path.dof);
+  return points;
 }
 
 bool LimitedSearch::enough() const {

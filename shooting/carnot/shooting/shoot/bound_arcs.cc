@@ -367,6 +367,26 @@ struct Contact {
   double impulse = 0;  // the integral of the multiplier
 };
 
+// Whether velocities change the value of the wall there, so that an arc may keep to it.
+bool is_of_first_order(const Walls& walls,
+                       HamiltonianTerms& terms,
+                       const Path& path,
+                       const Contact& contact) {
+  // ds.H_pp ds over its largest possible value. It vanishes where a wheel passes an obstacle, and
+  // is one for the steering angle of a vehicle.
+  constexpr double kNone = 1e-2;
+  if (contact.first == contact.last) return false;
+  const int n = path.dof;
+  std::vector<double> z(path.configuration(contact.strongest),
+                        path.configuration(contact.strongest) + n);
+  z.insert(z.end(), path.momentum(contact.strongest), path.momentum(contact.strongest) + n);
+  const WallAt wall = wall_at(walls, n, contact.wall, z.data());
+  const VectorXd moved = approach(terms, wall, z.data()).by_p;
+  double largest = 0;
+  for (int a = 0; a < n; ++a) largest = std::max(largest, std::abs(terms.pp(0, a, a)));
+  return moved.dot(wall.gradient) > kNone * largest * wall.gradient.squaredNorm();
+}
+
 // In order of time. Nothing where two walls are met at once, or one at an end.
 std::optional<std::vector<Contact>> contacts_of(const Walls& walls,
                                                 const InteriorPointOptions& options,
@@ -452,6 +472,7 @@ std::optional<BoundExtremal> pieces_of(const BoundaryValueProblem& problem,
   const auto contacts = contacts_of(walls, options, limited, h);
   if (!contacts) return std::nullopt;
   BoundExtremal extremal;
+  HamiltonianTerms terms(problem.dynamics);
   int begin = 0;
   const auto add = [&](Piece piece, int end, double eta) {
     fill_piece(walls, limited, begin, end, eta, piece);
@@ -467,7 +488,8 @@ std::optional<BoundExtremal> pieces_of(const BoundaryValueProblem& problem,
       free.release = 0.5 * contact.impulse;
       add(free, contact.first_peak, 0);
       add(free, contact.last_peak, 0);
-    } else if (as == Contacts::kTouches) {
+    } else if (as == Contacts::kTouches ||
+               (as == Contacts::kByOrder && !is_of_first_order(walls, terms, path, contact))) {
       free.touches = contact.wall;
       free.release = contact.impulse;
       add(free, contact.strongest, 0);
