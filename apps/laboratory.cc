@@ -7,6 +7,7 @@
 
 int main(int argc, char** argv) {
   using namespace carnot::apps;
+  guard_streams();
   watch_for_interrupts();
   constexpr std::array<AddSubcommand, 9> kSubcommands = {add_geodesic,
                                                          add_continue,

@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
   if (!arguments.empty() && is_laboratory_command(arguments.front())) {
     return become_laboratory(arguments);
   }
+  guard_streams();
   watch_for_interrupts();
   constexpr std::array<AddSubcommand, 4> kSubcommands = {
       add_geodesic, add_continue, add_flow, add_scenes};

@@ -117,7 +117,13 @@ int run(const std::vector<std::string>& arguments, std::span<const AddSubcommand
   } catch (const CLI::ExtrasError&) {
     refuse_extras(app, subcommand);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    if (error.get_exit_code() == 0) {  // --help, --version
+      app.exit(error);
+      std::cout.flush();
+      if (std::cout) return kSuccess;
+      complain("cannot write to stdout");
+      return kNotDelivered;
+    }
     throw std::invalid_argument(error.what());
   }
   return invocation.exit_status;
@@ -132,7 +138,7 @@ int run_program(const std::vector<std::string>& arguments,
     status = run(arguments, subcommands);
   } catch (const language::TextError& error) {
     // FILE:LINE:COLUMN, as editors read it, with the line and a caret below.
-    fmt::print(stderr, "{}\n", error.what());
+    std::cerr << error.what() << '\n';
     return kBadInput;
   } catch (const std::invalid_argument& error) {
     complain(error.what());

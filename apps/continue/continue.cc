@@ -60,6 +60,10 @@ ContinueRequest check(const ContinueCall& options) {
            "continuation is not offered with holonomic constraints that need RATTLE",
            "a scene without them");
   }
+  if (!request.run.dynamics.info.limits.empty()) {
+    refuse(
+        "SCENE", entry.info.name, "continuation does not keep to limits", "a scene without them");
+  }
   request.ends = parse_ends(options.from, options.to, options.time, request.run);
   request.along = parse_along(options.along, request.run, request.ends);
   if (!options.guess.empty() && !options.rank.empty()) {

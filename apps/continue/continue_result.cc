@@ -185,7 +185,7 @@ std::string report_text(const ContinueRequest& request, const ContinuationReport
   }
   text += fmt::format("{}, {:.3g} seconds\n", run.method.name, report.elapsed_seconds);
   if (!report.message.empty()) text += report.message + '\n';
-  return text + written_text(run.destination);
+  return text;
 }
 
 }  // namespace

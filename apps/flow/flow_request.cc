@@ -168,6 +168,13 @@ FlowRequest check(const FlowOptions& options) {
     refuse("--time", options.time, "it ends at infinity", "--start-time + --time finite");
   }
   parse_steps(options, request);
+  const double least = request.plan ? request.plan->step : request.time;
+  if (request.start_time + least == request.start_time) {
+    refuse("--start-time",
+           options.start_time,
+           "no time passes: a step is less than its round-off",
+           "a start time nearer to zero, or larger steps");
+  }
   request.tangent = options.tangent;
   return request;
 }

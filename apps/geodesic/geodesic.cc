@@ -60,6 +60,7 @@ struct GeodesicCall {
   std::string tolerance = "1e-10";
   std::string minimiser = "newton";
   std::string guess;
+  std::string time_limit;
   bool mod_angles = false;
   std::vector<std::string> limits;
   std::vector<std::string> discs;
@@ -97,6 +98,9 @@ GeodesicOptions check_search(const GeodesicCall& options, const Run& run) {
     search.guess = parse_vector("--guess", options.guess, coordinate_names(*run.entry));
   }
   search.mod_angles = options.mod_angles;
+  if (!options.time_limit.empty()) {
+    search.time_limit = parse_positive("--time-limit", options.time_limit);
+  }
   search.seed = run.seed;
   search.threads = run.threads;
   search.samples = run.samples;
@@ -139,6 +143,7 @@ void add_search_options(CLI::App& app, GeodesicCall& options) {
       options.minimiser,
       "NAME",
       "newton, ceres, nlopt or nlopt:NAME, NAME one of slsqp, lbfgs, mlsl, isres, crs (newton)");
+  add("--time-limit", options.time_limit, "SECONDS", "end with what was found by then (none)");
   add("--guess", options.guess, "P0", "momentum to start from instead");
   app.add_flag("--mod-angles", options.mod_angles, "angles agree modulo their periods");
   app.add_option("--limit", options.limits, "keep an expression in a range (repeatable)")

@@ -142,7 +142,6 @@ std::string report_text(const GeodesicRequest& request, const GeodesicReport& re
                       run.method.name,
                       report.elapsed_seconds);
   if (!report.message.empty()) text += report.message + '\n';
-  if (found > 0) text += written_text(run.destination);
   return text;
 }
 

@@ -19,7 +19,7 @@ struct Result {
   std::string message;    // why not
   Json json;
   std::function<std::string()> csv;                     // or what else --output is to hold
-  std::function<std::string()> text;                    // for people
+  std::function<std::string()> text;                    // for people; files follow it
   std::function<std::string(const std::string&)> draw;  // makes the plot file; warnings
 };
 

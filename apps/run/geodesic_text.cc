@@ -60,12 +60,4 @@ std::vector<std::string> geodesic_cells(const Geodesic& geodesic) {
           name_of(geodesic.label)};
 }
 
-std::string written_text(const Destination& destination) {
-  std::string text;
-  for (const std::string& file : {destination.plot, destination.output}) {
-    if (!file.empty()) text += "written: " + file + '\n';
-  }
-  return text;
-}
-
 }  // namespace carnot::apps

@@ -22,7 +22,4 @@ void add_extremal(const Geodesic& geodesic, const Ends& ends, Json& json);
 // Its action, length, error and label, for people.
 std::vector<std::string> geodesic_cells(const Geodesic& geodesic);
 
-// "written: FILE", a line for each file that was asked for.
-std::string written_text(const Destination& destination);
-
 }  // namespace carnot::apps

@@ -9,6 +9,10 @@
 namespace carnot::apps {
 
 void watch_for_interrupts();
+
+// A file that may grow no further is an error of writing, not the end of the program; and what was
+// closed from outside as stdin, stdout or stderr is not opened again as a file of ours.
+void guard_streams();
 [[nodiscard]] bool interrupted();
 
 }  // namespace carnot::apps

@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -24,7 +25,12 @@ std::optional<double> take_factor(std::string_view& text) {
   const bool number = starts_number(text);
   if (number) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc()) return std::nullopt;
+    if (error == std::errc::result_out_of_range) {
+      // Too large, or so small that it is zero.
+      value = std::strtod(std::string(text.data(), end).c_str(), nullptr);
+    } else if (error != std::errc()) {
+      return std::nullopt;
+    }
     text.remove_prefix(static_cast<std::size_t>(end - text.data()));
   }
   if (text.starts_with("pi")) {
@@ -76,7 +82,13 @@ std::vector<std::optional<double>> read_vector(std::string_view option,
   for (const std::string_view item : items) {
     values.push_back(read_real(item));
     if (values.back() || (allows_free && item == "*")) continue;
-    refuse(option, text, fmt::format("'{}' is not a finite number", item), accepted);
+    constexpr std::size_t kLongest = 60;
+    refuse(option,
+           text,
+           fmt::format("'{}{}' is not a finite number",
+                       item.substr(0, kLongest),
+                       item.size() > kLongest ? "..." : ""),
+           accepted);
   }
   if (items.size() != count) {
     const std::string_view plural = items.size() == 1 ? "" : "s";

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "carnot/plots/interrupts_blocked.h"
+#include "carnot/plots/replace_file.h"
 #include "text/numbers.h"
 
 namespace carnot::apps {
@@ -25,7 +26,7 @@ fs::path directory_of(const fs::path& path) {
 void check_output_directory(std::string_view option, const std::string& path) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) refuse(option, path, "is a directory", "the name of a file");
-  const fs::path directory = directory_of(path);
+  const fs::path directory = directory_of(plots::followed(path));
   if (!fs::is_directory(directory, ignored)) {
     const std::string why = fmt::format("there is no directory '{}'", directory.string());
     refuse(option, path, why, "a file in an existing directory");
@@ -56,19 +57,19 @@ void check_output_file(std::string_view option,
 
 void write_file(const std::string& path, std::string_view text) {
   const plots::InterruptsBlocked blocked;
-  const fs::path target(path);
+  const fs::path target(plots::followed(path));
   const fs::path temporary =
       directory_of(target) / fmt::format(".{}.{}.part", target.filename().string(), getpid());
   std::ofstream file(temporary, std::ios::binary);
   file << text;
   file.close();
-  std::error_code error;
-  if (file) fs::rename(temporary, target, error);
-  if (!file || error) {
+  try {
+    if (!file) throw std::runtime_error(fmt::format("cannot write '{}'", path));
+    plots::replace_file(temporary.string(), path);
+  } catch (const std::runtime_error&) {
     std::error_code ignored;
     fs::remove(temporary, ignored);
-    throw std::runtime_error(
-        fmt::format("cannot write '{}'{}", path, error ? ": " + error.message() : ""));
+    throw;
   }
 }
 

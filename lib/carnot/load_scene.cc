@@ -72,6 +72,14 @@ std::shared_ptr<const TextScene::Impl> TextScene::Impl::read(
   }
   try {
     const language::Formulation formulation = language::formulate(source, text, file);
+    const bool generalized =
+        formulation.kind == language::Formulation::Kind::kGeneralizedHamiltonian;
+    if (generalized && !source.limits.empty()) {
+      language::refuse_text(text,
+                            file,
+                            source.limits.front().place,
+                            "a limit on z: with 'hamiltonian' only a part of z is a configuration");
+    }
     impl->info = language::describe_text(source, formulation);
     impl->system = std::make_shared<const language::TextSystem>(formulation, *source.graph);
     const Dynamics dynamics = impl->bind();

@@ -206,6 +206,18 @@ TEST(GeodesicCommand, RefusesLimitsThatAreNone) {
   }
 }
 
+TEST(GeodesicCommand, EndsWhenItsTimeIsUp) {
+  const Words words{
+      "geodesic", "heisenberg-group", "--from", "0,0,0", "--to", "0.4,0.1,0.5", "--json"};
+  const auto json = run(with(words, {"--all", "--max-length", "9", "--time-limit", "0.2"})).json();
+  EXPECT_THAT(json["message"], HasSubstr("the time limit of 0.2 s was up"));
+  EXPECT_LT(json["elapsed_seconds"], 2);
+  const auto generous = run(with(words, {"--time-limit", "100"})).json();
+  EXPECT_EQ(generous["status"], "converged");
+  EXPECT_EQ(generous["message"], "");
+  EXPECT_EQ(generous["geodesics"].dump(), run(words).json()["geodesics"].dump());
+}
+
 TEST(GeodesicCommand, SaysWhichLimitCannotBeKept) {
   const Outcome end = run(parking({"--limit", "y in 0.5:", "--json"}));
   EXPECT_EQ(end.status, 1);

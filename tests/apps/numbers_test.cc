@@ -32,7 +32,8 @@ TEST(ParseReal, ReadsNumbersAndAngles) {
       {"1e300", 1e300}, {"pi", pi},         {"-pi", -pi},
       {"pi/2", pi / 2}, {"-pi/2", -pi / 2}, {"-3*pi/4", -3 * pi / 4},
       {"2pi", 2 * pi},  {"2*pi", 2 * pi},   {"pi*pi", pi * pi},
-      {"1/3", 1.0 / 3}, {"0.1", 0.1}};
+      {"1/3", 1.0 / 3}, {"0.1", 0.1},       {"1e-400", 0},
+      {"-1e-999", 0}};
   for (const auto& [text, value] : cases) EXPECT_EQ(parse_real("--x", text), value) << text;
 }
 
@@ -46,7 +47,6 @@ TEST(ParseReal, RefusesWhatIsNoFiniteNumber) {
                                  "infinity",
                                  "1e999",
                                  "-1e999",
-                                 "1e-999",
                                  "1/0",
                                  "pi/0",
                                  "0/0",

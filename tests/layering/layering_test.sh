@@ -14,7 +14,7 @@ core='carnot/((laws|language|transcription|flow|step|tableau|system|scene|numeri
 scenes='carnot/scenes/[a-z0-9_]+\.h'
 
 # The rooms of a layer from the top floor down: folders, or headers that are not in a folder.
-lib_rooms='make_inlined_dynamics make_rattle_dynamics make_dynamics load_scene language laws dynamics transcription flow step tableau system scenes scene
+lib_rooms='make_limit make_inlined_dynamics make_rattle_dynamics make_dynamics load_scene language laws dynamics transcription flow step tableau system scenes scene
   numerics'
 shooting_rooms='ompl_state_space continuation warm_start steering_function steer continue
   find_geodesics search extremal shoot path problem geodesic_options boundary_value_problem geodesic

@@ -138,6 +138,9 @@ TEST(Limit, IsRefusedWhereItIsNone) {
   EXPECT_THAT(refusal("point a = (x, y, 0)\n"), HasSubstr("in the plane"));
   EXPECT_THROW((void)scene_from_text("coordinates a\nkinetic = a'^2/2\ndisc (0, 0), 1\n"),
                std::invalid_argument);
+  EXPECT_THROW((void)scene_from_text("coordinates a, b\nhamiltonian = (a^2 + b^2) / 2\n"
+                                     "structure = [0, -1; 1, 0]\nlimit a < 1\n"),
+               std::invalid_argument);
 }
 
 // Held on a limit, flows keep its value, for each way in which velocities may be given.

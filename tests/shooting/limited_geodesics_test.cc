@@ -8,10 +8,13 @@
 #include <string>
 
 #include "carnot/make_limit.h"
+#include "carnot/shooting/continuation.h"
 #include "carnot/shooting/find_geodesics.h"
 #include "carnot/shooting/path/interior_point.h"
 #include "carnot/shooting/path/refinement.h"
 #include "carnot/shooting/shoot/bound_arcs.h"
+#include "carnot/shooting/steering_function.h"
+#include "carnot/shooting/warm_start.h"
 #include "shooting/drift_problems.h"
 #include "shooting/problems.h"
 
@@ -219,6 +222,39 @@ TEST(LimitedGeodesics, SayWhatCannotBe) {
   free.to[3] = 1;
   free.free_to = {false, false, false, true};
   EXPECT_EQ(best(free).limit_violation, std::max(0.0, best(free).limit_violation));
+}
+
+// What does not keep to limits says so, instead of an answer that is beyond them.
+TEST(LimitedGeodesics, AreNotLeftToWhatKnowsNoLimits) {
+  const BoundaryValueProblem problem = parking("limit -0.3 < phi - theta < 0.3\n");
+  EXPECT_THROW(SteeringFunction(problem.dynamics, {}), std::invalid_argument);
+  EXPECT_THROW(WarmStart(problem, {1, 2, 3, 4}), std::invalid_argument);
+  Geodesic start;
+  start.p0 = {1, 2, 3, 4};
+  EXPECT_THROW(continue_geodesic(moving_target(problem, {0, 2, 0, 0}), start),
+               std::invalid_argument);
+}
+
+// The other kinds: a Lagrangian with a wall at the point that it would pass, and one on a manifold.
+TEST(LimitedGeodesics, AreOfEveryKind) {
+  // x'' = -x over pi from 1 to -1 is cos t; with x <= 1.2 and speed to spare it is the same.
+  const auto spring = [](const std::string& limit) {
+    return test::from_text("coordinates x, y\nlagrangian = (x'^2 + y'^2 - x^2 - y^2) / 2\n" +
+                           limit);
+  };
+  const BoundaryValueProblem free(spring(""), {1, 0}, {-1, 0.2}, 2);
+  const BoundaryValueProblem wall(spring("limit (x - 0.1)^2 + y^2 > 0.09\n"), {1, 0}, {-1, 0.2}, 2);
+  const Geodesic round = best(wall);
+  EXPECT_GT(round.action, best(free).action);
+  expect_kept(wall, round);
+  const Dynamics pendulum = program_scene("spherical-pendulum", "limit z < 0.3\n");
+  const BoundaryValueProblem swing(pendulum, {1, 0, 0}, {-1, 0, 0}, 1);
+  const GeodesicReport report = solve(swing);
+  if (report.geodesics.empty()) {
+    EXPECT_EQ(report.reason, Reason::kLimitsInfeasible);
+  } else {
+    EXPECT_LE(report.geodesics[0].limit_violation, kViolation);
+  }
 }
 
 // Away from the solution Newton's method on the pieces converges quadratically: its derivatives are

@@ -15,6 +15,7 @@
 #include <stdexcept>
 
 #include "carnot/plots/interrupts_blocked.h"
+#include "carnot/plots/replace_file.h"
 
 namespace carnot::plots {
 namespace {
@@ -163,7 +164,7 @@ void validate_plot_file(const std::string& file) {
 
 std::string write_picture(const std::string& file, const Picture& picture) {
   validate_plot_file(file);
-  const Workshop workshop(fs::absolute(directory_of(file)));
+  const Workshop workshop(fs::absolute(directory_of(followed(file))));
   const std::string name = "figure" + ending(file);
   {
     auto starting = std::make_optional<ChildrenIgnoreInterrupts>();
@@ -180,8 +181,7 @@ std::string write_picture(const std::string& file, const Picture& picture) {
     throw std::runtime_error("gnuplot could not draw '" + file +
                              "': " + first_lines(workshop.read("log")));
   }
-  fs::rename(drawn, file, error);
-  if (error) throw std::runtime_error("cannot write '" + file + "': " + error.message());
+  replace_file(drawn.string(), file);
   return first_lines(workshop.read("log"));
 }
 

@@ -94,6 +94,10 @@ void check_start(const BoundaryValueProblem& problem, const Geodesic& start) {
     throw std::invalid_argument("the extremal at the start has " + std::to_string(samples) +
                                 " samples, must have 64 k + 1");
   }
+  if (!problem.limits.empty()) {
+    throw std::invalid_argument(
+        "continuation does not keep to limits: take them out of the problem");
+  }
   if (problem.dynamics.forced > 0) {
     throw std::invalid_argument(
         "continuation is not offered with holonomic constraints that need RATTLE");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "carnot/shooting/problem/ends.h"
 #include "carnot/shooting/problem/origin.h"
 #include "carnot/shooting/problem/windings.h"
+#include "carnot/shooting/search/deadline.h"
 #include "carnot/shooting/search/failure.h"
 #include "carnot/shooting/search/limited_search.h"
 #include "carnot/shooting/search/search.h"
@@ -79,6 +81,13 @@ bool stays(const BoundaryValueProblem& problem) {
   return completed;
 }
 
+// What the words of an answer are where the search was ended by its time limit.
+std::string time_is_up(double seconds, const std::string& message) {
+  std::ostringstream text;
+  text << "the time limit of " << seconds << " s was up";
+  return message.empty() ? text.str() : text.str() + "; " + message;
+}
+
 // What the searches for all images of the target gave.
 struct Found {
   std::vector<BoundaryValueProblem> problems;  // one for each image
@@ -88,6 +97,7 @@ struct Found {
   int converged = 0;
   int blocked = 0;
   bool finished = true;
+  bool timed_out = false;
   bool counted = true;  // hits tell how many were missed
   Failure failure;      // why there is none, of the first image
 };
@@ -116,6 +126,7 @@ void search_image(const GeodesicOptions& options, Found& found) {
   found.starts += search.starts();
   found.converged += search.converged();
   found.blocked += search.blocked();
+  found.timed_out = search.timed_out();
   if (found.list.empty() && found.failure.reason == Reason::kNone) {
     found.failure = explain_failure(problem, search, options);
   }
@@ -124,6 +135,7 @@ void search_image(const GeodesicOptions& options, Found& found) {
 GeodesicReport find_without_limits(const BoundaryValueProblem& asked,
                                    const GeodesicOptions& options) {
   const auto began = std::chrono::steady_clock::now();
+  const Deadline deadline(options.time_limit);
   GeodesicReport report;
   const BoundaryValueProblem problem = at_origin(asked);
   std::vector<Image> images{{problem.to, {}}};
@@ -133,9 +145,11 @@ GeodesicReport find_without_limits(const BoundaryValueProblem& asked,
   for (const Image& image : images) {
     found.problems.push_back(problem);
     found.problems.back().to = image.to;
-    search_image(options, found);
+    GeodesicOptions of_image = options;
+    of_image.time_limit = deadline.left();
+    search_image(of_image, found);
     const bool stayed = !found.list.empty() && found.list.back().geodesic.action == 0;
-    if (!found.finished || (stayed && !options.all && options.count == 1)) break;
+    if (!found.finished || found.timed_out || (stayed && !options.all && options.count == 1)) break;
   }
   rank(found.list);
   std::vector<Extremal>& list = found.list;
@@ -158,6 +172,7 @@ GeodesicReport find_without_limits(const BoundaryValueProblem& asked,
     report.reason = found.failure.reason;
     report.message = found.failure.message;
   }
+  if (found.timed_out) report.message = time_is_up(options.time_limit, report.message);
   if (!found.finished) {
     report.status = GeodesicStatus::kInterrupted;
     report.reason = Reason::kInterrupted;
@@ -172,6 +187,7 @@ GeodesicReport find_without_limits(const BoundaryValueProblem& asked,
 GeodesicReport find_with_limits(const BoundaryValueProblem& asked, const GeodesicOptions& options) {
   constexpr std::size_t kImages = 4;
   constexpr int kFewStarts = 12;
+  const Deadline deadline(options.time_limit);
   const auto began = std::chrono::steady_clock::now();
   GeodesicReport report;
   report.message = beyond_limit_at_end(asked);
@@ -199,14 +215,18 @@ GeodesicReport find_with_limits(const BoundaryValueProblem& asked, const Geodesi
   report.reason = Reason::kNone;
   problem.limits = asked.limits;
   bool finished = true;
+  bool timed_out = false;
   for (const Image& image : images) {
     problem.to = image.to;
     std::vector<Geodesic> of_image;
     for (const Geodesic& geodesic : known) {
       if (geodesic.windings == image.windings) of_image.push_back(geodesic);
     }
-    LimitedAnswer answer = search_with_limits(problem, options, of_image);
+    GeodesicOptions rest = options;
+    rest.time_limit = deadline.left();
+    LimitedAnswer answer = search_with_limits(problem, rest, of_image);
     finished = answer.finished;
+    timed_out = timed_out || answer.timed_out;
     report.starts += answer.starts;
     report.converged_starts += answer.converged;
     for (Geodesic& geodesic : answer.geodesics) {
@@ -217,7 +237,7 @@ GeodesicReport find_with_limits(const BoundaryValueProblem& asked, const Geodesi
       report.reason = answer.reason;
       report.message = answer.message;
     }
-    if (!finished) break;
+    if (!finished || timed_out) break;
   }
   rank(report.geodesics);
   if (!options.all && report.geodesics.size() > static_cast<std::size_t>(options.count)) {
@@ -230,6 +250,7 @@ GeodesicReport find_with_limits(const BoundaryValueProblem& asked, const Geodesi
     report.reason = Reason::kNone;
     report.message.clear();
   }
+  if (timed_out) report.message = time_is_up(options.time_limit, report.message);
   if (!finished) {
     report.status = GeodesicStatus::kInterrupted;
     report.reason = Reason::kInterrupted;
@@ -254,6 +275,7 @@ void GeodesicOptions::validate(const BoundaryValueProblem& problem) const {
   require(samples >= 0, "samples is " + std::to_string(samples) + ", must be >= 0");
   require(tolerance > 0 && std::isfinite(tolerance),
           "tolerance is " + std::to_string(tolerance) + ", must be > 0");
+  require(time_limit > 0, "time_limit is " + std::to_string(time_limit) + ", must be > 0");
   require(max_length > 0, "max_length is " + std::to_string(max_length) + ", must be > 0");
   const std::vector<std::string> known = minimisers();
   require(std::find(known.begin(), known.end(), minimiser) != known.end(),

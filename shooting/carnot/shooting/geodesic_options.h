@@ -22,6 +22,9 @@ struct GeodesicOptions {
   std::vector<double> guess;
   std::uint64_t seed = 0;
   int threads = 0;     // 0: all cores
+  // Seconds after which the search ends with what it has found. The answer of a search that was not
+  // ended by it does not depend on it.
+  double time_limit = std::numeric_limits<double>::infinity();
   long samples = 201;  // times in each trajectory; 0: none
   Progress progress;   // fraction done; returns false to stop
 

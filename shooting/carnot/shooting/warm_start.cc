@@ -43,6 +43,10 @@ EndPointModel::Vector checked(const BoundaryValueProblem& problem,
                               double tolerance) {
   constexpr int kMost = EndPointModel::kMostDof;
   problem.validate();
+  if (!problem.limits.empty()) {
+    throw std::invalid_argument(
+        "a warm start does not keep to limits: take them out of the problem");
+  }
   const int n = problem.dynamics.dof;
   if (static_cast<int>(p0.size()) != n || n > kMost) {
     throw std::invalid_argument("p0 has " + std::to_string(p0.size()) +

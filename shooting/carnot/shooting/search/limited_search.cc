@@ -19,6 +19,7 @@
 #include "carnot/shooting/path/relaxation.h"
 #include "carnot/shooting/problem/ends.h"
 #include "carnot/shooting/problem/walls.h"
+#include "carnot/shooting/search/deadline.h"
 #include "carnot/shooting/search/drift_starts.h"
 #include "carnot/shooting/search/starts.h"
 #include "carnot/shooting/shoot/bound_arcs.h"
@@ -686,7 +687,10 @@ LimitedAnswer LimitedSearch::run() {
   const auto lacks = [&] {
     return answer.geodesics.size() < static_cast<std::size_t>(options_.count);
   };
+  const Deadline deadline(options_.time_limit);
   while (answer.starts < most && (!enough() || lacks())) {
+    answer.timed_out = deadline.passed();
+    if (answer.timed_out) break;
     if (options_.progress && !options_.progress(static_cast<double>(answer.starts) / most)) {
       answer.finished = false;
       break;

@@ -29,6 +29,7 @@ struct LimitedAnswer {
   int starts = 0;
   int converged = 0;
   bool finished = true;
+  bool timed_out = false;
   Reason reason = Reason::kNone;
   std::string message;
 };

@@ -27,6 +27,7 @@ ExtremalList::Partners Search::partners_for(const BoundaryValueProblem& problem,
 Search::Search(const BoundaryValueProblem& problem, const GeodesicOptions& options)
     : problem_(problem),
       options_(options),
+      deadline_(options.time_limit),
       threads_(thread_count(options.threads)),
       near_(NearTarget::of(problem)),
       policy_(
@@ -50,9 +51,10 @@ bool Search::run() {
   const bool by_paths = problem_.dynamics.has_transcription();
   const int sweeps = policy_.sweeps();
   const auto goes_on = [&](double share) { return !options_.progress || options_.progress(share); };
+  const auto is_late = [&] { return timed_out_ = deadline_.passed(); };
   if (near_) shoot_straight();
   int descents = 0;
-  while (policy_.left(tally_) > 0 && !settled()) {
+  while (policy_.left(tally_) > 0 && !settled() && !is_late()) {
     if (!goes_on(policy_.share(tally_))) return false;
     if (by_paths && descends_ && descents < kMaxDescents) {
       if (!descend_round()) sweep_round(descents++);
@@ -65,7 +67,7 @@ bool Search::run() {
     }
   }
   for (int round = 0; round < sweeps; ++round) {
-    if (extremals_.empty() || !policy_.lacks(extremals_.size())) break;
+    if (extremals_.empty() || !policy_.lacks(extremals_.size()) || is_late()) break;
     if (!goes_on(0.5 + 0.5 * round / sweeps)) return false;
     sweep_round(round);
   }
@@ -143,7 +145,7 @@ Search::Polished Search::absorb(const std::vector<RelaxedStart>& starts) {
 void Search::polish_all(const std::vector<std::size_t>& indices, Polished& tally) {
   std::vector<Outcome> polished(indices.size());
   parallel_for(static_cast<int>(indices.size()), threads_, [&](int i) {
-    polished[i] = polish(problem_, options_, discrete_[indices[i]].path);
+    if (!deadline_.passed()) polished[i] = polish(problem_, options_, discrete_[indices[i]].path);
   });
   for (std::size_t i = 0; i < indices.size(); ++i) {
     DiscreteExtremal& discrete = discrete_[indices[i]];

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "carnot/shooting/search/deadline.h"
 #include "carnot/shooting/search/discrete_list.h"
 #include "carnot/shooting/search/drift_starts.h"
 #include "carnot/shooting/search/relaxed_start.h"
@@ -39,6 +40,8 @@ class Search {
   [[nodiscard]] bool counts() const;
   [[nodiscard]] int starts() const { return tally_.starts; }
   [[nodiscard]] int converged() const { return tally_.converged; }
+  // Whether the search ended since its time was up.
+  [[nodiscard]] bool timed_out() const { return timed_out_; }
   // How many starts ran into a singularity of the coordinates.
   [[nodiscard]] int blocked() const { return tally_.blocked; }
   // How far the best attempt came that did not become an extremal.
@@ -97,6 +100,8 @@ class Search {
 
   const BoundaryValueProblem& problem_;
   const GeodesicOptions& options_;
+  Deadline deadline_;
+  bool timed_out_ = false;
   int threads_;
   std::optional<NearTarget> near_;    // where paths are relaxed to a target further away
   std::optional<DriftStarts> drift_;  // where the scene has no transcription of its own

@@ -37,6 +37,7 @@ void Search::relax_round(int count) {
   const RelaxedStartOptions options{options_.seed, intervals_, stiffness_};
   std::vector<RelaxedStart> starts(count);
   parallel_for(count, threads_, [&](int i) {
+    if (deadline_.passed()) return;
     starts[i] = relaxed_start(problem_, near_, options, tally_.drawn + i);
   });
   tally_.drawn += count;
@@ -55,8 +56,9 @@ void Search::relax_round(int count) {
 
 void Search::drift_round(int count) {
   std::vector<RelaxedStart> starts(count);
-  parallel_for(
-      count, threads_, [&](int i) { starts[i] = drift_->start(tally_.drawn + i, intervals_); });
+  parallel_for(count, threads_, [&](int i) {
+    if (!deadline_.passed()) starts[i] = drift_->start(tally_.drawn + i, intervals_);
+  });
   tally_.drawn += count;
   const Polished polished = absorb(starts);
   const bool artefacts = polished.failed >= kArtefacts && polished.failed > polished.good;
@@ -112,7 +114,7 @@ void Search::momentum_round(int count) {
   std::vector<Outcome> polished(count);
   parallel_for(count, threads_, [&](int i) {
     const std::vector<double> p0 = momentum_start(problem_, options_.seed, tally_.drawn + i);
-    if (p0.empty()) return;
+    if (p0.empty() || deadline_.passed()) return;
     const int segments = i % 2 == 0 ? kSegments : 1;
     const Knots knots = knots_of(problem_, p0, segments, kFirstSteps);
     polished[i] = polish(problem_, options_, knots);
@@ -164,6 +166,7 @@ void Search::sweep_round(int round) {
   std::vector<RelaxedStart> tightened(paths.size());
   parallel_for(static_cast<int>(paths.size()), threads_, [&](int i) {
     tightened[i].path = paths[i];
+    if (deadline_.passed()) return;
     tightened[i].found = tighten(problem_, {}, tightened[i].path).converged;
   });
   absorb(tightened);
@@ -174,7 +177,7 @@ void Search::shoot_near_hits(const std::vector<Path>& paths,
                              const std::vector<RelaxedStart>& tightened) {
   std::vector<std::optional<Extremal>> extremals(paths.size());
   parallel_for(static_cast<int>(paths.size()), threads_, [&](int i) {
-    if (tightened[i].found) return;
+    if (tightened[i].found || deadline_.passed()) return;
     ShootingOptions shooting;
     shooting.steps = paths[i].intervals / 2;
     Knots knots = knots_of(paths[i], kSegments);

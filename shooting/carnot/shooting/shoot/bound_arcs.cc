@@ -513,6 +513,8 @@ bool join_pieces(const BoundaryValueProblem& problem,
   constexpr int kMostIterations = 20;
   constexpr double kShortest = 1.0 / 32;
   constexpr double kSolved = 1e-12;
+  // Pieces begin at times that are not known yet.
+  if (!problem.dynamics.autonomous) return false;
   const Held held(problem, walls, extremal);
   if (!held.exists()) return false;
   Equations equations(problem, walls, held, steps, extremal);

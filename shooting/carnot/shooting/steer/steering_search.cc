@@ -40,6 +40,10 @@ SteeringSearch::SteeringSearch(Dynamics dynamics, const SteeringOptions& options
     throw std::invalid_argument("resolution is " + std::to_string(options_.resolution) +
                                 ", must be >= 0");
   }
+  if (!dynamics_.info.limits.empty()) {
+    throw std::invalid_argument(
+        "steering does not keep to limits: take them out of the scene, or ask find_geodesics");
+  }
   const std::size_t free = options_.free_target.size();
   if (free > 0 && free != zero.size()) {
     throw std::invalid_argument("free_target has " + std::to_string(free) +
