@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <map>
 #include <memory>
 
 #include "benchmark/benchmark_clock.h"
 #include "carnot/numerics/parallel.h"
 #include "carnot/shooting/find_geodesics.h"
+#include "catalogue/limit_choice.h"
 #include "catalogue/method_table.h"
 #include "catalogue/scene_choice.h"
 #include "catalogue/text_entry.h"
@@ -32,10 +34,12 @@ the default search for one geodesic on one thread, many at a time. "solved" has 
 independent integration, at knots where the end point is too sensitive. Those that are not are
 counted by reason: the codes of `carnot geodesic`, and irregular-end where the constraints are
 dependent at the target; --json has them one by one, with messages. Times are CPU times.
+With limits, targets are drawn until one keeps to them.
 
 Examples
   carnot stress vehicle
   carnot stress trailer1 --targets 1000 --seed 7 --json
+  carnot stress vehicle --targets 100 --limit 'phi-theta in -0.3:0.3'
 
 Exit status: 0 success, also where targets are left unsolved; 2 bad input, 130 interrupted.)";
 
@@ -47,6 +51,9 @@ struct StressOptions {
   std::string seed = "0";
   std::string threads;
   Destination destination;
+  std::string time_limit;
+  std::vector<std::string> limits;
+  std::vector<std::string> discs;
 };
 
 struct Trial {
@@ -60,19 +67,50 @@ struct Trial {
   std::string message;
 };
 
-Trial try_target(const Dynamics& dynamics, std::uint64_t seed, int i) {
+// What all targets share.
+struct Course {
+  Dynamics dynamics;
+  std::vector<Limit> limits;
+  double time_limit = std::numeric_limits<double>::infinity();
+  std::uint64_t seed = 0;
+};
+
+bool keeps_to(const std::vector<Limit>& limits, const std::vector<double>& q) {
+  return std::all_of(limits.begin(), limits.end(), [&](const Limit& limit) {
+    return limit.slack(limit.value(q.data(), nullptr, nullptr)) >= 0;
+  });
+}
+
+// A target that keeps to the limits: the first of some that are drawn for it.
+std::vector<double> draw_target(const Course& course, int i) {
+  constexpr std::uint64_t kMostDrawn = 1000;
+  const Dynamics& dynamics = course.dynamics;
+  const bool drifts = !dynamics.has_transcription() && dynamics.holonomic == 0;
+  std::vector<double> to;
+  for (std::uint64_t k = 0; k < kMostDrawn; ++k) {
+    const std::uint64_t seed = course.seed + (k << 32U);
+    to = drifts ? reachable_target(dynamics, seed, i) : random_target(dynamics, seed, i);
+    if (keeps_to(course.limits, to)) break;
+  }
+  return to;
+}
+
+Trial try_target(const Course& course, int i) {
+  const Dynamics& dynamics = course.dynamics;
   const double began = thread_seconds();
   Trial trial;
   trial.from.assign(dynamics.dof, 0.0);
-  if (dynamics.holonomic > 0) trial.from = random_target(dynamics, ~seed, i);
-  const bool drifts = !dynamics.has_transcription() && dynamics.holonomic == 0;
-  trial.to = drifts ? reachable_target(dynamics, seed, i) : random_target(dynamics, seed, i);
+  if (dynamics.holonomic > 0) trial.from = random_target(dynamics, ~course.seed, i);
+  trial.to = draw_target(course, i);
   GeodesicOptions options;
-  options.seed = seed;
+  options.seed = course.seed;
+  options.time_limit = course.time_limit;
   options.threads = 1;
   options.samples = 0;
   try {
-    const GeodesicReport report = find_geodesics({dynamics, trial.from, trial.to}, options);
+    BoundaryValueProblem problem(dynamics, trial.from, trial.to);
+    problem.limits = course.limits;
+    const GeodesicReport report = find_geodesics(problem, options);
     trial.reason = name_of(report.reason);
     trial.message = report.message;
     trial.solved = !report.geodesics.empty();
@@ -89,15 +127,13 @@ Trial try_target(const Dynamics& dynamics, std::uint64_t seed, int i) {
 }
 
 // Empty when stopped.
-std::vector<Trial> try_all(
-    const Dynamics& dynamics, int targets, std::uint64_t seed, int threads, const Progress& go_on) {
+std::vector<Trial> try_all(const Course& course, int targets, int threads, const Progress& go_on) {
   constexpr int kBatch = 16;  // between two looks at the progress
   std::vector<Trial> trials(targets);
   for (int first = 0; first < targets; first += kBatch * threads) {
     if (!go_on(static_cast<double>(first) / targets)) return {};
     const int count = std::min(kBatch * threads, targets - first);
-    parallel_for(
-        count, threads, [&](int i) { trials[first + i] = try_target(dynamics, seed, first + i); });
+    parallel_for(count, threads, [&](int i) { trials[first + i] = try_target(course, first + i); });
   }
   return trials;
 }
@@ -174,24 +210,32 @@ int run_stress(const StressOptions& options, const std::vector<std::string>& arg
   const Method& method = as_text ? *find_method("gauss16") : choose_method(options.method, entry);
   const auto targets =
       static_cast<int>(parse_integer("--targets", options.targets, 1, kMostTargets));
-  const std::uint64_t seed = parse_seed("--seed", options.seed);
+  Course course;
+  course.seed = parse_seed("--seed", options.seed);
+  if (!options.time_limit.empty()) {
+    course.time_limit = parse_positive("--time-limit", options.time_limit);
+  }
   const int threads = parse_threads(options.threads);
   check_table_output(options.destination);
-  const Dynamics dynamics =
+  course.dynamics =
       as_text ? dynamics_of_text(entry, parameters) : entry.make(parameters, method.name);
+  const Dynamics& dynamics = course.dynamics;
+  course.limits = dynamics.info.limits;
+  if (!options.limits.empty() || !options.discs.empty()) {
+    course.limits = choose_limits(options.scene, parameters, options.limits, options.discs);
+  }
   if (dynamics.forced > 0 && !dynamics.on_leaves) {
     refuse("--method", options.method, "searches by RATTLE take too long", "none, for gauss16");
   }
   ProgressBar bar("targets", targets, options.destination.quiet);
-  const std::vector<Trial> trials =
-      try_all(dynamics, targets, seed, thread_count(threads), bar.callback());
+  const std::vector<Trial> trials = try_all(course, targets, thread_count(threads), bar.callback());
   if (trials.empty()) return kInterrupted;
   Result result;
   result.json = result_head(arguments);
   result.json["scene"] = entry.info.name;
   result.json["parameters"] = parameters;
   result.json["method"] = method.name;
-  result.json["seed"] = seed;
+  result.json["seed"] = course.seed;
   result.json.update(summary_of(trials));
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
   result.json["elapsed_seconds"] = elapsed.count();
@@ -215,6 +259,13 @@ void add_stress(CLI::App& app, Invocation& invocation) {
   add("--targets", options->targets, "N", "how many (1000)");
   add("--seed", options->seed, "N", "fixes all randomness (0)");
   add("--threads", options->threads, "N", "threads; the answer does not depend on it (all)");
+  add("--time-limit", options->time_limit, "SECONDS", "of each target (none)");
+  stress.add_option("--limit", options->limits, "keep an expression in a range (repeatable)")
+      ->type_name("'EXPR in A:B'")
+      ->allow_extra_args(false);
+  stress.add_option("--disc", options->discs, "keep the body's points out of a disc (repeatable)")
+      ->type_name("X,Y,R")
+      ->allow_extra_args(false);
   add_table_options(stress, options->destination);
   stress.footer(kStressFooter);
   stress.callback([options, &invocation] {

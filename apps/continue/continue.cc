@@ -44,6 +44,7 @@ struct ContinueCall {
   std::string guess;
   std::string max_points = "1000";
   std::string tolerance = "1e-10";
+  std::string time_limit;
   bool branches = false;
   bool no_labels = false;
 };
@@ -76,6 +77,9 @@ ContinueRequest check(const ContinueCall& options) {
   request.options.max_points =
       static_cast<int>(parse_integer("--max-points", options.max_points, 1, kMostPoints));
   request.options.tolerance = parse_tolerance("--tolerance", options.tolerance);
+  if (!options.time_limit.empty()) {
+    request.time_limit = parse_positive("--time-limit", options.time_limit);
+  }
   request.options.branches = options.branches;
   request.options.labels = !options.no_labels;
   return request;
@@ -89,6 +93,7 @@ ContinuationReport run(const ContinueRequest& request) {
   search.count = request.rank;
   search.guess = request.guess;
   search.tolerance = request.options.tolerance;
+  search.time_limit = request.time_limit;
   search.seed = request.run.seed;
   search.threads = request.run.threads;
   search.samples = kSamples;
@@ -124,6 +129,7 @@ void add_continue_options(CLI::App& app, ContinueCall& options) {
   add("--along", options.along, "NAME=VALUE", "what changes: to, from, time or a parameter");
   add("--rank", options.rank, "N", "start from the extremal of N-th least action (1)");
   add("--guess", options.guess, "P0", "momentum to start from instead");
+  add("--time-limit", options.time_limit, "SECONDS", "of the search for the start (none)");
   add("--max-points", options.max_points, "N", "stop after so many (1000)");
   add("--tolerance", options.tolerance, "TOL", "largest error at the end (1e-10)");
   app.add_flag("--branches", options.branches, "follow the curves that cross at branch points");

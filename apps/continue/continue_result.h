@@ -1,6 +1,7 @@
 // What a continuation gave, as JSON, CSV, text and a plot.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,8 @@ struct ContinueRequest {
   Ends ends;
   Along along;
   int rank = 1;
-  std::vector<double> guess;  // empty: search
+  std::vector<double> guess;                                    // empty: search
+  double time_limit = std::numeric_limits<double>::infinity();  // of that search
   ContinuationOptions options;
 };
 

@@ -37,6 +37,15 @@ TEST(Stress, HoldsItsContract) {
   EXPECT_THAT(run({"stress", "unicycle", "--targets", "2"}).out, HasSubstr("2 (100.00 %)"));
 }
 
+TEST(Stress, KeepsToLimits) {
+  const auto json =
+      run({"stress", "vehicle", "--targets", "8", "--limit", "phi-theta in -0.3:0.3", "--json"})
+          .json();
+  EXPECT_EQ(json["solved"], 8);
+  EXPECT_EQ(json["labels"]["locally-minimal"], 8);
+  EXPECT_GT(json["verified_at_knots"], 0);  // pieces on the limit
+}
+
 TEST(Stress, GoesFromPointToPointOfAManifold) {
   const auto json = run({"stress", "satellite-quaternion", "--targets", "20", "--json"}).json();
   EXPECT_EQ(json["solved"], 20);

@@ -13,6 +13,8 @@
 #include "carnot/shooting/path/interior_point.h"
 #include "carnot/shooting/path/refinement.h"
 #include "carnot/shooting/shoot/bound_arcs.h"
+#include "carnot/shooting/shoot/bound_survey.h"
+#include "carnot/shooting/shoot/contacts.h"
 #include "carnot/shooting/steering_function.h"
 #include "carnot/shooting/warm_start.h"
 #include "shooting/drift_problems.h"

@@ -2,106 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <map>
-#include <span>
-#include <stdexcept>
 #include <utility>
 
 #include "carnot/shooting/linear/dense.h"
 #include "carnot/shooting/linear/round_off.h"
 #include "carnot/shooting/problem/ends.h"
-#include "carnot/shooting/problem/hamiltonian_terms.h"
+#include "carnot/shooting/shoot/on_wall.h"
 
 namespace carnot::internal {
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-// A wall at a point.
-struct WallAt {
-  double s = 0;
-  VectorXd gradient;
-  MatrixXd hessian;
-};
-
-WallAt wall_at(const Walls& walls, int n, int wall, const double* q) {
-  std::vector<double> s(walls.size());
-  std::vector<double> gradients(s.size() * n);
-  std::vector<double> hessians(gradients.size() * n);
-  walls.evaluate(q, s.data(), gradients.data(), hessians.data());
-  const Eigen::Index size = n;
-  return {
-      s[wall],
-      Eigen::Map<const VectorXd>(&gradients[static_cast<std::size_t>(wall) * n], size),
-      Eigen::Map<const MatrixXd>(&hessians[static_cast<std::size_t>(wall) * n * n], size, size)};
-}
-
-// ds.H_p of the scene without bounds, and its derivatives by q and p.
-struct Approach {
-  double rate = 0;
-  VectorXd by_q;
-  VectorXd by_p;
-};
-
-Approach approach(HamiltonianTerms& terms, const WallAt& wall, const double* z) {
-  const auto n = wall.gradient.size();
-  terms.set(0, 0, z, z + n);
-  Approach result;
-  result.by_q.setZero(n);
-  result.by_p.setZero(n);
-  if (!terms.evaluate(1, HamiltonianTerms::Order::kSecond)) {
-    result.rate = std::numeric_limits<double>::quiet_NaN();
-    return result;
-  }
-  for (int a = 0; a < n; ++a) {
-    result.rate += wall.gradient[a] * terms.by_p(0, a);
-    for (int b = 0; b < n; ++b) {
-      result.by_q[a] +=
-          wall.hessian(a, b) * terms.by_p(0, b) + terms.qp(0, a, b) * wall.gradient[b];
-      result.by_p[a] += terms.pp(0, a, b) * wall.gradient[b];
-    }
-  }
-  return result;
-}
-
-// The scene on each wall.
-class Held {
- public:
-  Held(const BoundaryValueProblem& problem, const Walls& walls, const BoundExtremal& extremal)
-      : problem_(problem) {
-    for (const Piece& piece : extremal.pieces) {
-      if (piece.wall < 0 || scenes_.count(piece.wall) > 0) continue;
-      const Limit& limit = problem.limits[walls[piece.wall].limit];
-      if (!limit.held) {
-        exists_ = false;
-        return;
-      }
-      try {
-        scenes_.emplace(piece.wall, limit.held());
-      } catch (const std::invalid_argument&) {  // the rows are dependent there
-        exists_ = false;
-      }
-    }
-  }
-  [[nodiscard]] bool exists() const { return exists_; }
-  [[nodiscard]] const Dynamics& of(const Piece& piece) const {
-    return piece.wall < 0 ? problem_.dynamics : scenes_.at(piece.wall);
-  }
-
- private:
-  const BoundaryValueProblem& problem_;
-  std::map<int, Dynamics> scenes_;
-  bool exists_ = true;
-};
-
-// How many steps each segment of a piece takes.
-long steps_of(const BoundaryValueProblem& problem, const Piece& piece, double start, long steps) {
-  const double share = (piece.end - start) / problem.time;
-  const double each = std::ceil(share * static_cast<double>(steps) / piece.segments);
-  return std::max(2L, static_cast<long>(each));
-}
 
 // Unknowns: those of the start, the other segments' starts, the times between pieces, then eta at
 // the end of each arc.
@@ -280,173 +192,6 @@ class Equations {
   double p_size_ = 1;
 };
 
-// eta on an arc: what makes the velocity without the bound keep to it.
-double eta_at(const Walls& walls, HamiltonianTerms& terms, int wall, const double* z, int n) {
-  const WallAt at = wall_at(walls, n, wall, z);
-  const Approach to = approach(terms, at, z);
-  return to.rate / to.by_p.dot(at.gradient);
-}
-
-// nu = eta' along a segment on a wall, by differences of eta.
-struct MultiplierRange {
-  double least = std::numeric_limits<double>::infinity();
-  double largest = 0;
-};
-
-MultiplierRange multipliers(const Walls& walls,
-                            HamiltonianTerms& terms,
-                            const Dynamics& dynamics,
-                            const Piece& piece,
-                            const StepPlan& plan,
-                            std::vector<double> z) {
-  constexpr long kSamples = 33;
-  MonitorOptions options;
-  options.samples = kSamples;
-  const Trajectory path = dynamics.monitored_flow(plan, z, options).trajectory;
-  MultiplierRange range;
-  double before = 0;
-  for (std::size_t i = 0; i < path.t.size(); ++i) {
-    std::vector<double> at = path.q[i];
-    at.insert(at.end(), path.p[i].begin(), path.p[i].end());
-    const double eta = eta_at(walls, terms, piece.wall, at.data(), dynamics.dof);
-    if (i > 0) {
-      const double nu = (eta - before) / (path.t[i] - path.t[i - 1]);
-      range.least = std::min(range.least, nu);
-      range.largest = std::max(range.largest, nu);
-    }
-    before = eta;
-  }
-  return range;
-}
-
-double energy_at(const Dynamics& dynamics, const std::vector<double>& z) {
-  std::vector<double> velocity(dynamics.dof);
-  std::vector<double> lambda(dynamics.multipliers);
-  const std::span<const double> at(z);
-  return dynamics.evaluate(0, at.first(dynamics.dof), at.subspan(dynamics.dof), velocity, lambda)
-      .hamiltonian;
-}
-
-// Appends samples of a segment, with the momenta of the problem without bounds.
-void record(const BoundaryValueProblem& problem,
-            const Walls& walls,
-            HamiltonianTerms& terms,
-            int wall,
-            const Trajectory& samples,
-            Trajectory& to) {
-  const int n = problem.dynamics.dof;
-  std::vector<double> lambda(problem.dynamics.multipliers);
-  std::vector<double> velocity(n);
-  for (std::size_t i = 0; i < samples.t.size(); ++i) {
-    std::vector<double> z = samples.q[i];
-    z.insert(z.end(), samples.p[i].begin(), samples.p[i].end());
-    if (wall >= 0) {
-      const double eta = eta_at(walls, terms, wall, z.data(), n);
-      const WallAt at = wall_at(walls, n, wall, z.data());
-      for (int j = 0; j < n; ++j) z[n + j] -= eta * at.gradient[j];
-    }
-    const std::span<const double> at(z);
-    const auto values =
-        problem.dynamics.evaluate(samples.t[i], at.first(n), at.subspan(n), velocity, lambda);
-    to.t.push_back(samples.t[i]);
-    to.q.emplace_back(z.begin(), z.begin() + n);
-    to.p.emplace_back(z.begin() + n, z.end());
-    to.lambda.push_back(lambda);
-    to.hamiltonian.push_back(values.hamiltonian);
-  }
-}
-
-// Nodes in a row where the multiplier of a wall exceeds its slack.
-struct Contact {
-  int wall = 0;
-  int first = 0;
-  int last = 0;
-  int strongest = 0;   // where the multiplier is largest
-  int first_peak = 0;  // where it is larger than at both neighbours, first and last
-  int last_peak = 0;
-  double impulse = 0;  // the integral of the multiplier
-};
-
-// Whether velocities change the value of the wall there, so that an arc may keep to it.
-bool is_of_first_order(const Walls& walls,
-                       HamiltonianTerms& terms,
-                       const Path& path,
-                       const Contact& contact) {
-  // ds.H_pp ds over its largest possible value. It vanishes where a wheel passes an obstacle, and
-  // is one for the steering angle of a vehicle.
-  constexpr double kNone = 1e-2;
-  if (contact.first == contact.last) return false;
-  const int n = path.dof;
-  std::vector<double> z(path.configuration(contact.strongest),
-                        path.configuration(contact.strongest) + n);
-  z.insert(z.end(), path.momentum(contact.strongest), path.momentum(contact.strongest) + n);
-  const WallAt wall = wall_at(walls, n, contact.wall, z.data());
-  const VectorXd moved = approach(terms, wall, z.data()).by_p;
-  double largest = 0;
-  for (int a = 0; a < n; ++a) largest = std::max(largest, std::abs(terms.pp(0, a, a)));
-  return moved.dot(wall.gradient) > kNone * largest * wall.gradient.squaredNorm();
-}
-
-// In order of time. Nothing where two walls are met at once, or one at an end.
-std::optional<std::vector<Contact>> contacts_of(const Walls& walls,
-                                                const InteriorPointOptions& options,
-                                                const LimitedPath& limited,
-                                                double h) {
-  const int last = limited.path.intervals;
-  const int m = walls.size();
-  std::vector<Contact> contacts;
-  for (int node = 0; node <= last; ++node) {
-    int met = -1;
-    for (int w = 0; w < m; ++w) {
-      const std::size_t i = static_cast<std::size_t>(node) * m + w;
-      const double size = options.sizes[w];
-      if (!(limited.nu[i] * size / options.rate > limited.sigma[i] / size)) continue;
-      if (met >= 0 || node == 0 || node == last) return std::nullopt;
-      met = w;
-    }
-    if (met < 0) continue;
-    const auto nu = [&](int at) { return limited.nu[static_cast<std::size_t>(at) * m + met]; };
-    if (contacts.empty() || contacts.back().last + 1 < node) {
-      contacts.push_back({met, node, node, node, -1, -1, 0});
-    } else if (contacts.back().wall != met) {
-      return std::nullopt;
-    }
-    Contact& contact = contacts.back();
-    contact.last = node;
-    contact.impulse += h * nu(node);
-    if (nu(node) > nu(contact.strongest)) contact.strongest = node;
-    if (nu(node) >= nu(node - 1) && nu(node) >= nu(node + 1)) {
-      if (contact.first_peak < 0) contact.first_peak = node;
-      contact.last_peak = node;
-    }
-  }
-  for (Contact& contact : contacts) {
-    if (contact.first_peak < 0) contact.first_peak = contact.last_peak = contact.strongest;
-  }
-  return contacts;
-}
-
-// The segments of a piece from node `begin` to `end`; on an arc eta grows to that value.
-void fill_piece(
-    const Walls& walls, const LimitedPath& limited, int begin, int end, double eta, Piece& piece) {
-  constexpr int kSegments = 8;  // of the whole time
-  const Path& path = limited.path;
-  const double share = static_cast<double>(end - begin) / path.intervals;
-  piece.segments = std::max(1, static_cast<int>(std::ceil(kSegments * share)));
-  piece.segments = std::min(piece.segments, std::max(1, end - begin));
-  for (int i = 0; i < piece.segments; ++i) {
-    const int node = begin + (end - begin) * i / piece.segments;
-    std::vector<double> z(path.configuration(node), path.configuration(node) + path.dof);
-    z.insert(z.end(), path.momentum(node), path.momentum(node) + path.dof);
-    if (piece.wall >= 0) {
-      const double reached = eta * (node - begin) / (end - begin);
-      const WallAt at = wall_at(walls, path.dof, piece.wall, z.data());
-      for (int j = 0; j < path.dof; ++j) z[path.dof + j] += reached * at.gradient[j];
-    }
-    piece.z.insert(piece.z.end(), z.begin(), z.end());
-  }
-}
-
 bool in_order(const BoundExtremal& extremal, const BoundExtremal& before) {
   constexpr double kShrink = 0.2;  // a piece may lose so much at once
   double start = 0;
@@ -462,48 +207,10 @@ bool in_order(const BoundExtremal& extremal, const BoundExtremal& before) {
 
 }  // namespace
 
-std::optional<BoundExtremal> pieces_of(const BoundaryValueProblem& problem,
-                                       const Walls& walls,
-                                       const InteriorPointOptions& options,
-                                       const LimitedPath& limited,
-                                       Contacts as) {
-  const Path& path = limited.path;
-  const double h = problem.time / path.intervals;
-  const auto contacts = contacts_of(walls, options, limited, h);
-  if (!contacts) return std::nullopt;
-  BoundExtremal extremal;
-  HamiltonianTerms terms(problem.dynamics);
-  int begin = 0;
-  const auto add = [&](Piece piece, int end, double eta) {
-    fill_piece(walls, limited, begin, end, eta, piece);
-    piece.end = end * h;
-    extremal.pieces.push_back(std::move(piece));
-    begin = end;
-  };
-  for (const Contact& contact : *contacts) {
-    Piece free;
-    if (as == Contacts::kPairs) {
-      if (contact.first_peak == contact.last_peak) return std::nullopt;
-      free.touches = contact.wall;
-      free.release = 0.5 * contact.impulse;
-      add(free, contact.first_peak, 0);
-      add(free, contact.last_peak, 0);
-    } else if (as == Contacts::kTouches ||
-               (as == Contacts::kByOrder && !is_of_first_order(walls, terms, path, contact))) {
-      free.touches = contact.wall;
-      free.release = contact.impulse;
-      add(free, contact.strongest, 0);
-    } else {
-      if (contact.last == contact.first || contact.first <= begin) return std::nullopt;
-      add(free, contact.first, 0);
-      Piece arc;
-      arc.wall = contact.wall;
-      arc.release = contact.impulse;
-      add(arc, contact.last, contact.impulse);
-    }
-  }
-  add(Piece{}, path.intervals, 0);
-  return extremal;
+long steps_of(const BoundaryValueProblem& problem, const Piece& piece, double start, long steps) {
+  const double share = (piece.end - start) / problem.time;
+  const double each = std::ceil(share * static_cast<double>(steps) / piece.segments);
+  return std::max(2L, static_cast<long>(each));
 }
 
 bool join_pieces(const BoundaryValueProblem& problem,
@@ -538,77 +245,6 @@ bool join_pieces(const BoundaryValueProblem& problem,
     if (extremal.residual <= kRestRoundOff) break;
   }
   return extremal.residual <= kSolved;
-}
-
-BoundSurvey survey_pieces(const BoundaryValueProblem& problem,
-                          const Walls& walls,
-                          const BoundExtremal& extremal,
-                          long steps,
-                          const std::vector<double>& times) {
-  const int n = problem.dynamics.dof;
-  const double slack = kTimeRoundOff * problem.time;
-  const Held held(problem, walls, extremal);
-  HamiltonianTerms terms(problem.dynamics);
-  BoundSurvey result;
-  FlowSummary& total = result.summary;
-  double initial = std::numeric_limits<double>::quiet_NaN();
-  double start = 0;
-  for (std::size_t k = 0; k < extremal.pieces.size(); ++k) {
-    const Piece& piece = extremal.pieces[k];
-    const Dynamics& dynamics = held.of(piece);
-    const double duration = (piece.end - start) / piece.segments;
-    const long count = steps_of(problem, piece, start, steps);
-    double largest = 0;
-    for (int i = 0; i < piece.segments; ++i) {
-      const bool ends = i + 1 == piece.segments;
-      const bool last = ends && k + 1 == extremal.pieces.size();
-      const double from = start + i * duration;
-      const double to = ends ? piece.end : from + duration;
-      std::vector<double> z(piece.z.begin() + i * 2 * n, piece.z.begin() + (i + 1) * 2 * n);
-      if (piece.wall >= 0) {
-        const MultiplierRange range =
-            multipliers(walls, terms, dynamics, piece, StepPlan::equal(from, to - from, count), z);
-        largest = std::max(largest, range.largest);
-        result.least_multiplier = std::min(result.least_multiplier, range.least);
-      }
-      MonitorOptions options;
-      for (const double t : times) {
-        if (t >= from - slack && (last || t < to - slack)) {
-          options.times.push_back(std::clamp(t, from, to));
-        }
-      }
-      const double energy = energy_at(dynamics, z);
-      if (std::isnan(initial)) initial = energy;
-      const FlowSummary part =
-          dynamics.monitored_flow(StepPlan::equal(from, to - from, count), z, options);
-      if (!part.completed()) return result;
-      total.action += part.action;
-      total.length += part.length;
-      total.energy_drift =
-          std::max(total.energy_drift, part.energy_drift + std::abs(energy - initial));
-      total.constraint_error = std::max(total.constraint_error, part.constraint_error);
-      record(problem, walls, terms, piece.wall, part.trajectory, total.trajectory);
-      if (last) {
-        result.end = z;
-        const double unit = length_per_momentum(problem, &extremal.pieces[0].z[n]);
-        result.defect = std::max(result.defect, miss(problem, z.data(), unit));
-        continue;
-      }
-      const double* next = ends ? extremal.pieces[k + 1].z.data() : &piece.z[(i + 1) * 2 * n];
-      if (piece.leaves() >= 0 && ends) {
-        const WallAt wall = wall_at(walls, n, piece.leaves(), next);
-        for (int j = 0; j < n; ++j) z[n + j] -= piece.release * wall.gradient[j];
-      }
-      for (int j = 0; j < 2 * n; ++j) {
-        const double gap = std::abs(z[j] - next[j]);
-        result.defect = gap <= result.defect ? result.defect : gap;
-      }
-    }
-    result.largest_multiplier.push_back(largest);
-    start = piece.end;
-  }
-  result.completed = true;
-  return result;
 }
 
 }  // namespace carnot::internal

@@ -22,11 +22,9 @@
 // method with exact derivatives. Arcs are for limits of first order: ds.H_p must depend on p there.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "carnot/shooting/boundary_value_problem.h"
-#include "carnot/shooting/path/interior_point.h"
 #include "carnot/shooting/problem/walls.h"
 
 namespace carnot::internal {
@@ -49,20 +47,6 @@ struct BoundExtremal {
   double residual = 0;  // Euclidean norm of all equations, relative
 };
 
-// What a contact of a path on the grid is taken for: an arc where the limit is of first order
-// there, and a touch elsewhere; an arc; a touch where its multiplier is largest; or two touches,
-// where the multiplier has its first and its last peak, with a flow between them that stays on the
-// wall by itself. That is how limits of second order are kept to.
-enum class Contacts { kByOrder, kArcs, kTouches, kPairs };
-
-// The pieces of a path on the grid, by where its multipliers exceed its slacks. Nothing where a
-// wall is met at the ends of the path or together with another one.
-std::optional<BoundExtremal> pieces_of(const BoundaryValueProblem& problem,
-                                       const Walls& walls,
-                                       const InteriorPointOptions& options,
-                                       const LimitedPath& limited,
-                                       Contacts as);
-
 // Joins the pieces in place; `steps` of the method over the whole time. False where Newton's method
 // does not converge, or the scene cannot be held on a wall.
 bool join_pieces(const BoundaryValueProblem& problem,
@@ -70,20 +54,7 @@ bool join_pieces(const BoundaryValueProblem& problem,
                  long steps,
                  BoundExtremal& extremal);
 
-// What flows of `steps` steps in all along the pieces say. Momenta of the trajectory are those of
-// L - nu s. `defect` is the largest gap between two segments or at the target.
-struct BoundSurvey {
-  bool completed = false;
-  FlowSummary summary;
-  double defect = 0;
-  std::vector<double> end;                 // z(T)
-  std::vector<double> largest_multiplier;  // nu, of each piece
-  double least_multiplier = 0;
-};
-BoundSurvey survey_pieces(const BoundaryValueProblem& problem,
-                          const Walls& walls,
-                          const BoundExtremal& extremal,
-                          long steps,
-                          const std::vector<double>& times);
+// How many steps each segment of a piece takes, when the whole time takes so many.
+long steps_of(const BoundaryValueProblem& problem, const Piece& piece, double start, long steps);
 
 }  // namespace carnot::internal

@@ -1,0 +1,298 @@
+#include "carnot/shooting/search/limited_finish.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "carnot/shooting/extremal/classification.h"
+#include "carnot/shooting/extremal/verification.h"
+#include "carnot/shooting/path/refinement.h"
+#include "carnot/shooting/problem/ends.h"
+#include "carnot/shooting/shoot/bound_survey.h"
+#include "carnot/shooting/shoot/contacts.h"
+#include "carnot/shooting/shoot/survey.h"
+
+namespace carnot::internal {
+
+// On the grid of half the step.
+bool LimitedFinish::refine(Candidate& candidate, double last_mu) const {
+  const LimitedPath& coarse = candidate.limited;
+  const int m = shared_.walls.size();
+  LimitedPath fine;
+  fine.path = halved(coarse.path);
+  for (int node = 0; node <= fine.path.intervals; ++node) {
+    for (int w = 0; w < m; ++w) {
+      const std::size_t a = static_cast<std::size_t>(node / 2) * m + w;
+      const std::size_t b = static_cast<std::size_t>((node + 1) / 2) * m + w;
+      fine.sigma.push_back(0.5 * (coarse.sigma[a] + coarse.sigma[b]));
+      fine.nu.push_back(0.5 * (coarse.nu[a] + coarse.nu[b]));
+    }
+  }
+  InteriorPointOptions options = shared_.interior;
+  options.first_mu = candidate.mu;
+  options.last_mu = last_mu;
+  const InteriorPoint solved = interior_point(shared_.problem, shared_.walls, options, fine);
+  if (!solved.converged) return false;
+  candidate.limited = std::move(fine);
+  candidate.minimum = solved.minimum;
+  candidate.mu = last_mu;
+  candidate.action = discrete_action(shared_.problem.dynamics,
+                                     shared_.problem.time / candidate.limited.path.intervals,
+                                     candidate.limited.path);
+  return true;
+}
+
+void LimitedFinish::add_extremes(const std::vector<std::vector<double>>& q,
+                                 Geodesic& geodesic) const {
+  for (const Extreme& extreme : shared_.problem.dynamics.info.extremes) {
+    double largest = 0;
+    for (const auto& at : q) largest = std::max(largest, std::abs(extreme.value(at.data())));
+    geodesic.extremes.emplace_back(extreme.name, largest);
+  }
+}
+
+// Without any contact: an extremal of the problem without limits.
+std::optional<Geodesic> LimitedFinish::by_flow(const BoundExtremal& extremal) const {
+  constexpr long kSteps = 32;
+  constexpr int kDense = 2048;
+  const Piece& piece = extremal.pieces.front();
+  Knots knots{piece.segments, shared_.problem.dynamics.dof, piece.z};
+  knots.z.resize(knots.z.size() + 2 * knots.dof);
+  Outcome verified = verify(shared_.unlimited, std::move(knots), kSteps, options_.tolerance);
+  if (!verified.extremal) return std::nullopt;
+  complete(shared_.unlimited, options_.samples, *verified.extremal);
+  Geodesic geodesic = std::move(verified.extremal->geodesic);
+  const Knots& found = verified.extremal->knots;
+  shared_.report_limits(
+      survey(shared_.unlimited, found, geodesic.plan.count, kDense + 1).trajectory.q, geodesic);
+  return shared_.keeps_to_limits(geodesic) ? std::optional(std::move(geodesic)) : std::nullopt;
+}
+
+std::optional<Geodesic> LimitedFinish::by_pieces(const BoundExtremal& extremal,
+                                                 const Candidate& candidate) const {
+  constexpr int kDense = 2048;
+  constexpr long kMostSteps = 4096;
+  constexpr double kPull = -1e-6;  // of the multiplier's unit: the wall pulls
+  const int n = shared_.problem.dynamics.dof;
+  BoundExtremal solved = extremal;
+  std::vector<double> dense;
+  for (int i = 0; i <= kDense; ++i) dense.push_back(shared_.problem.time * i / kDense);
+  BoundSurvey measured;
+  long steps = 64;
+  bool settled = false;
+  for (; steps <= kMostSteps && !settled; steps *= 2) {
+    if (!join_pieces(shared_.problem, shared_.walls, steps, solved)) return std::nullopt;
+    measured = survey_pieces(shared_.problem, shared_.walls, solved, 2 * steps, dense);
+    settled = measured.completed && measured.defect <= 0.1 * options_.tolerance;
+  }
+  if (!measured.completed || !(measured.defect <= options_.tolerance)) return std::nullopt;
+  Geodesic geodesic;
+  std::vector<std::vector<double>> points = measured.summary.trajectory.q;
+  for (const Piece& piece : solved.pieces)
+    points.emplace_back(piece.z.begin(), piece.z.begin() + n);
+  shared_.report_limits(points, geodesic);
+  if (!shared_.keeps_to_limits(geodesic)) return std::nullopt;
+  double start = 0;
+  for (std::size_t k = 0; k < solved.pieces.size(); ++k) {
+    const Piece& piece = solved.pieces[k];
+    const int wall = piece.leaves();
+    if (wall >= 0) {
+      const double unit = shared_.interior.rate / shared_.interior.sizes[wall];
+      if (measured.least_multiplier < kPull * unit || piece.release < kPull * unit) {
+        return std::nullopt;
+      }
+      LimitReport& limit = geodesic.limits[shared_.walls[wall].limit];
+      limit.active.emplace_back(piece.wall >= 0 ? start : piece.end, piece.end);
+      limit.largest_multiplier = std::max(limit.largest_multiplier, measured.largest_multiplier[k]);
+    }
+    start = piece.end;
+  }
+  const std::vector<double>& z = solved.pieces.front().z;
+  geodesic.from.assign(z.begin(), z.begin() + n);
+  geodesic.p0.assign(z.begin() + n, z.begin() + 2 * n);
+  geodesic.to = shared_.problem.to;
+  for (int j = 0; j < n; ++j) {
+    if (shared_.problem.is_free_to(j)) geodesic.to[j] = measured.end[j];
+  }
+  geodesic.transversality_error = transversality_error(shared_.problem, measured.end.data());
+  geodesic.lambda0.assign(shared_.problem.dynamics.multipliers, 0.0);
+  std::vector<double> velocity(n);
+  shared_.problem.dynamics.evaluate(0, geodesic.from, geodesic.p0, velocity, geodesic.lambda0);
+  geodesic.verification = Verification::kKnots;
+  geodesic.knot_defect = measured.defect;
+  geodesic.action = measured.summary.action;
+  if (std::isfinite(measured.summary.length)) geodesic.length = measured.summary.length;
+  geodesic.constraint_error = measured.summary.constraint_error;
+  geodesic.energy_drift = measured.summary.energy_drift;
+  geodesic.plan = StepPlan::equal(0, shared_.problem.time, steps);
+  if (candidate.minimum) geodesic.label = Label::kLocallyMinimal;
+  add_extremes(measured.summary.trajectory.q, geodesic);
+  if (options_.samples > 0) {
+    geodesic.trajectory = survey_pieces(shared_.problem,
+                                        shared_.walls,
+                                        solved,
+                                        steps,
+                                        sample_times(geodesic.plan, options_.samples))
+                              .summary.trajectory;
+  }
+  return geodesic;
+}
+
+std::optional<Geodesic> LimitedFinish::joined(const Candidate& candidate) const {
+  for (const Contacts as :
+       {Contacts::kByOrder, Contacts::kArcs, Contacts::kTouches, Contacts::kPairs}) {
+    const auto pieces =
+        pieces_of(shared_.problem, shared_.walls, shared_.interior, candidate.limited, as);
+    if (!pieces) continue;
+    if (pieces->pieces.size() == 1) return by_flow(*pieces);
+    if (auto geodesic = by_pieces(*pieces, candidate)) return geodesic;
+  }
+  return std::nullopt;
+}
+
+// The nodes as they are; samples between them by straight lines.
+Geodesic LimitedFinish::on_grid(const Candidate& candidate, double coarse_action) const {
+  const Path& path = candidate.limited.path;
+  const Dynamics& dynamics = shared_.problem.dynamics;
+  const int n = path.dof;
+  const int m = shared_.walls.size();
+  const double h = shared_.problem.time / path.intervals;
+  Geodesic geodesic;
+  geodesic.verification = Verification::kGrid;
+  geodesic.from.assign(path.configuration(0), path.configuration(1));
+  geodesic.to.assign(path.configuration(path.intervals), path.configuration(path.intervals) + n);
+  geodesic.p0.assign(path.momentum(0), path.momentum(0) + n);
+  // The error of the midpoint rule is a quarter of that on the grid before.
+  geodesic.action = candidate.action + (candidate.action - coarse_action) / 3;
+  geodesic.grid_error = std::abs(candidate.action - coarse_action) / 3;
+  std::vector<double> velocity(n), lambda(dynamics.multipliers);
+  dynamics.evaluate(0, geodesic.from, geodesic.p0, velocity, lambda);
+  geodesic.lambda0 = lambda;
+  std::vector<std::vector<double>> nodes;
+  for (int i = 0; i <= path.intervals; ++i) {
+    nodes.emplace_back(path.configuration(i), path.configuration(i) + n);
+  }
+  shared_.report_limits(points_along(path), geodesic);
+  for (int w = 0; w < m; ++w) {
+    LimitReport& limit = geodesic.limits[shared_.walls[w].limit];
+    for (int i = 0; i <= path.intervals; ++i) {
+      const std::size_t at = static_cast<std::size_t>(i) * m + w;
+      const double nu = candidate.limited.nu[at];
+      const double size = shared_.interior.sizes[w];
+      limit.largest_multiplier = std::max(limit.largest_multiplier, nu);
+      if (!(nu * size / shared_.interior.rate > candidate.limited.sigma[at] / size)) continue;
+      if (!limit.active.empty() && limit.active.back().second >= (i - 1.5) * h) {
+        limit.active.back().second = i * h;
+      } else {
+        limit.active.emplace_back(i * h, i * h);
+      }
+    }
+  }
+  const StepPlan plan = StepPlan::equal(0, shared_.problem.time, path.intervals);
+  geodesic.plan = plan;
+  double length = 0;
+  for (const double t : sample_times(plan, options_.samples)) {
+    const double place = std::min(t / h, static_cast<double>(path.intervals) - 1e-9);
+    const int i = static_cast<int>(place);
+    const double share = place - i;
+    std::vector<double> q(n), p(n);
+    for (int j = 0; j < n; ++j) {
+      q[j] = (1 - share) * path.configuration(i)[j] + share * path.configuration(i + 1)[j];
+      p[j] = (1 - share) * path.momentum(i)[j] + share * path.momentum(i + 1)[j];
+    }
+    geodesic.trajectory.t.push_back(t);
+    geodesic.trajectory.hamiltonian.push_back(
+        dynamics.evaluate(t, q, p, velocity, lambda).hamiltonian);
+    geodesic.trajectory.q.push_back(std::move(q));
+    geodesic.trajectory.p.push_back(std::move(p));
+    geodesic.trajectory.lambda.push_back(lambda);
+  }
+  if (dynamics.has_transcription()) {
+    std::vector<double> terms(n + dynamics.transcribed + 1), middle(n);
+    bool potential = false;
+    for (int i = 0; i < path.intervals; ++i) {
+      double square = 0;
+      for (int j = 0; j < n; ++j) {
+        middle[j] = 0.5 * (nodes[i][j] + nodes[i + 1][j]);
+        velocity[j] = (nodes[i + 1][j] - nodes[i][j]) / h;
+      }
+      if (!dynamics.midpoint(middle, velocity, terms)) continue;
+      potential = potential || terms.back() != 0;
+      for (int j = 0; j < n; ++j) square += terms[j] * terms[j];
+      length += h * std::sqrt(square);
+    }
+    if (!potential) geodesic.length = length;
+  }
+  if (candidate.minimum) geodesic.label = Label::kLocallyMinimal;
+  add_extremes(nodes, geodesic);
+  return geodesic;
+}
+
+std::optional<Geodesic> LimitedFinish::finish(Candidate candidate) const {
+  // mu on grids of 2, 4, ... times the first one. Contacts are told from the second of them in
+  // nearly all cases.
+  constexpr std::array kMu{3e-4, 1e-4, 1e-5, 1e-7};
+  constexpr double kBeyondOnGrid = 1e-4;  // between two nodes
+  Candidate coarse;
+  for (std::size_t level = 0; level < kMu.size(); ++level) {
+    coarse = candidate;
+    if (!refine(candidate, kMu[level])) return std::nullopt;
+    if (level == 0) continue;
+    if (auto geodesic = joined(candidate)) return geodesic;
+  }
+  if (!settle(coarse) || !settle(candidate)) return std::nullopt;
+  Geodesic geodesic = on_grid(candidate, coarse.action);
+  if (!shared_.keeps_to_limits(geodesic, kBeyondOnGrid)) return std::nullopt;
+  return geodesic;
+}
+
+// With the least mu, on the same grid. Between nodes the straight line may be beyond a wall by the
+// square of an interval; then the walls are moved by that much.
+bool LimitedFinish::settle(Candidate& candidate) const {
+  constexpr double kLeastMu = 1e-9;
+  constexpr double kMargin = 1.5;
+  constexpr int kRounds = 3;
+  InteriorPointOptions options = shared_.interior;
+  options.last_mu = kLeastMu;
+  std::vector<Limit> limits = shared_.problem.limits;
+  for (int round = 0; round < kRounds; ++round) {
+    options.first_mu = std::max(candidate.mu, kLeastMu);
+    const Walls walls(limits, shared_.problem.dynamics.dof);
+    if (!interior_point(shared_.problem, walls, options, candidate.limited).converged) return false;
+    candidate.mu = kLeastMu;
+    Geodesic judged;
+    shared_.report_limits(points_along(candidate.limited.path), judged);
+    if (!(judged.limit_violation > 0)) break;
+    for (std::size_t i = 0; i < limits.size(); ++i) {
+      const double beyond = std::max(0.0, -judged.limits[i].lowest_slack);
+      limits[i].lower += kMargin * beyond;
+      limits[i].upper -= kMargin * beyond;
+    }
+  }
+  candidate.action = discrete_action(shared_.problem.dynamics,
+                                     shared_.problem.time / candidate.limited.path.intervals,
+                                     candidate.limited.path);
+  return true;
+}
+
+// The nodes of a path, and points of the straight lines between them: a path could step over a
+// wall.
+std::vector<std::vector<double>> LimitedFinish::points_along(const Path& path) {
+  constexpr int kBetween = 4;
+  std::vector<std::vector<double>> points;
+  for (int i = 0; i < path.intervals; ++i) {
+    for (int part = 0; part < kBetween; ++part) {
+      const double share = static_cast<double>(part) / kBetween;
+      points.emplace_back(path.configuration(i), path.configuration(i + 1));
+      for (int j = 0; j < path.dof; ++j) {
+        points.back()[j] += share * (path.configuration(i + 1)[j] - path.configuration(i)[j]);
+      }
+    }
+  }
+  points.emplace_back(path.configuration(path.intervals),
+                      path.configuration(path.intervals) + path.dof);
+  return points;
+}
+
+}  // namespace carnot::internal

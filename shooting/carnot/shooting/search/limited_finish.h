@@ -1,0 +1,58 @@
+// From a discrete extremal with limits on a coarse grid to a geodesic.
+//
+// The grid is refined while mu is lowered. As soon as the multipliers tell where the path keeps to
+// which wall, pieces are joined (bound_arcs.h), checked, and measured. Where they never join, the
+// path on the finest grid is the answer.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "carnot/shooting/geodesic_options.h"
+#include "carnot/shooting/search/limited_problem.h"
+#include "carnot/shooting/shoot/bound_arcs.h"
+
+namespace carnot::internal {
+
+// mu on the first grid. A wall that is met at a point pins the path to a node where mu is small,
+// and every node is a minimum of its own. With 1e-6 and 64 intervals the four least of 48 starts
+// for a vehicle that passes a disc were four such minima, of actions from 22.50 to 22.64, where the
+// extremal has 22.52. With 1e-3 the wall acts on several nodes.
+constexpr double kFirstGridMu = 1e-3;
+
+// A discrete extremal with limits.
+struct Candidate {
+  LimitedPath limited;
+  double action = std::numeric_limits<double>::infinity();
+  double mu = kFirstGridMu;
+  int hits = 1;
+  bool minimum = false;
+  bool tried = false;  // to finish it
+};
+
+class LimitedFinish {
+ public:
+  // Keeps references.
+  LimitedFinish(const LimitedProblem& shared, const GeodesicOptions& options)
+      : shared_(shared), options_(options) {}
+
+  // Nothing where the candidate has no counterpart on finer grids, or is beyond a limit.
+  [[nodiscard]] std::optional<Geodesic> finish(Candidate candidate) const;
+
+ private:
+  [[nodiscard]] bool refine(Candidate& candidate, double last_mu) const;
+  [[nodiscard]] bool settle(Candidate& candidate) const;
+  [[nodiscard]] static std::vector<std::vector<double>> points_along(const Path& path);
+  [[nodiscard]] std::optional<Geodesic> joined(const Candidate& candidate) const;
+  [[nodiscard]] std::optional<Geodesic> by_flow(const BoundExtremal& extremal) const;
+  [[nodiscard]] std::optional<Geodesic> by_pieces(const BoundExtremal& extremal,
+                                                  const Candidate& candidate) const;
+  [[nodiscard]] Geodesic on_grid(const Candidate& candidate, double coarse_action) const;
+  void add_extremes(const std::vector<std::vector<double>>& q, Geodesic& geodesic) const;
+
+  const LimitedProblem& shared_;
+  const GeodesicOptions& options_;
+};
+
+}  // namespace carnot::internal
