@@ -23,6 +23,7 @@ class ChainEnds {
 
   [[nodiscard]] bool free() const { return !first_.empty() || !last_.empty(); }
   [[nodiscard]] int first() const { return static_cast<int>(first_.size()); }
+  [[nodiscard]] int inner() const { return inner_; }
   [[nodiscard]] int size() const { return first() + inner_ + static_cast<int>(last_.size()); }
   // Where unknown `j` stands in the chain,
   [[nodiscard]] int place(int j) const {
@@ -65,8 +66,26 @@ class Chain {
         jacobian_(r_.size() * 2 * n) {}
 
   [[nodiscard]] int size() const { return size_; }
-  // Where unknown `j` stands in x.
-  [[nodiscard]] int place(int j) const { return ends_.place(j); }
+  // x + step.
+  void move(const std::vector<double>& x,
+            const std::vector<double>& step,
+            std::vector<double>& to) const {
+    const double* own = &step[ends_.first()];
+    for (int j = 0; j < ends_.inner(); ++j) to[n_ + j] = x[n_ + j] + own[j];
+    for (int j = 0; ends_.free() && j < size_; ++j)
+      to[ends_.place(j)] = x[ends_.place(j)] + step[j];
+  }
+  // |x| of the nodes that move.
+  [[nodiscard]] double size_of(const std::vector<double>& x) const {
+    const double inner = norm({&x[n_], static_cast<std::size_t>(ends_.inner())});
+    if (!ends_.free()) return inner;
+    double square = inner * inner;
+    for (int j = 0; j < size_; ++j) {
+      const bool at_end = j < ends_.first() || j >= ends_.first() + ends_.inner();
+      if (at_end) square += x[ends_.place(j)] * x[ends_.place(j)];
+    }
+    return std::sqrt(square);
+  }
 
   // Infinite where there are no residuals.
   [[nodiscard]] double cost(const std::vector<double>& x) {
@@ -223,14 +242,9 @@ int minimise_chain(const ChainResiduals& residuals_of,
       region.reject();
       continue;
     }
-    double size = 0;
-    for (int j = 0; j < chain.size(); ++j) {
-      const int at = chain.place(j);
-      trial[at] = x[at] + step[j];
-      size += x[at] * x[at];
-    }
+    chain.move(x, step, trial);
     const double gain = cost - chain.cost(trial);
-    size = std::sqrt(size) + options.step_tolerance;
+    const double size = chain.size_of(x) + options.step_tolerance;
     done = std::abs(gain) <= options.function_tolerance * cost ||
            norm(step) <= options.step_tolerance * size;
     if (!(gain > kLeastRatio * predicted)) {
