@@ -211,7 +211,7 @@ TEST(GeodesicCommand, EndsWhenItsTimeIsUp) {
       "geodesic", "heisenberg-group", "--from", "0,0,0", "--to", "0.4,0.1,0.5", "--json"};
   const auto json = run(with(words, {"--all", "--max-length", "9", "--time-limit", "0.2"})).json();
   EXPECT_THAT(json["message"], HasSubstr("the time limit of 0.2 s was up"));
-  EXPECT_LT(json["elapsed_seconds"], 2);
+  EXPECT_LT(json["starts"], 1200);  // what --all takes without it
   const auto generous = run(with(words, {"--time-limit", "100"})).json();
   EXPECT_EQ(generous["status"], "converged");
   EXPECT_EQ(generous["message"], "");

@@ -22,7 +22,8 @@ struct Limit {
   // The function at q (length n) and, unless null, its gradient (n) and second derivatives (n x n,
   // row-major). Safe to call from many threads.
   std::function<double(const double* q, double* gradient, double* hessian)> value;
-  // What is forbidden in the plane of the drawing: the corners of a region. Empty: nothing is drawn.
+  // What is forbidden in the plane of the drawing: the corners of a region. Empty: nothing is
+  // drawn.
   std::vector<std::array<double, 2>> outline{};
   // The scene with its velocities kept along the surfaces where the function is constant, for arcs
   // on a bound: one more velocity constraint. Empty where there is none; throws

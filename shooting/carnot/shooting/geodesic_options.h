@@ -21,7 +21,7 @@ struct GeodesicOptions {
   // p0 to start from instead of paths, with q_j(0) for free coordinates; empty: none.
   std::vector<double> guess;
   std::uint64_t seed = 0;
-  int threads = 0;     // 0: all cores
+  int threads = 0;  // 0: all cores
   // Seconds after which the search ends with what it has found. The answer of a search that was not
   // ended by it does not depend on it.
   double time_limit = std::numeric_limits<double>::infinity();
