@@ -301,6 +301,20 @@ TEST(FreeEnds, AreReachedFromAWarmStart) {
   for (int j = 0; j < 4; ++j) EXPECT_NEAR(checked.geodesics[0].p0[j], p0[j], 1e-7) << j;
 }
 
+// The guess has the coordinates of the caller, also where the search moves the origin.
+TEST(FreeEnds, StartFromAGuess) {
+  BoundaryValueProblem problem = with_free(test::sideways(), {0}, {});
+  problem.to[0] = 5;
+  const Geodesic known = best(problem);
+  GeodesicOptions options;
+  options.guess = known.p0;
+  options.guess[0] = known.from[0];
+  const GeodesicReport report = find_geodesics(problem, options);
+  ASSERT_EQ(report.geodesics.size(), 1U);
+  EXPECT_NEAR(report.geodesics[0].from[0], known.from[0], kSolved);
+  EXPECT_NEAR(report.geodesics[0].action, known.action, kSolved * known.action);
+}
+
 TEST(FreeEnds, AreRefusedWhereTheyCannotBe) {
   BoundaryValueProblem problem = test::sideways();
   problem.free_to = {true};

@@ -226,6 +226,23 @@ TEST(LimitedGeodesics, SayWhatCannotBe) {
   EXPECT_EQ(best(free).limit_violation, std::max(0.0, best(free).limit_violation));
 }
 
+// Paths are judged at many times, however few samples are asked for.
+TEST(LimitedGeodesics, AreCheckedWithoutSamples) {
+  for (const char* limit : {"0.3", "0.5"}) {
+    const std::string line = std::string("limit -") + limit + " < phi - theta < " + limit + "\n";
+    const BoundaryValueProblem problem = parking(line);
+    const Geodesic full = best(problem);
+    for (const long samples : {0L, 1L, 2L}) {
+      GeodesicOptions options;
+      options.samples = samples;
+      const Geodesic geodesic = find_geodesics(problem, options).geodesics.at(0);
+      EXPECT_EQ(geodesic.p0, full.p0);
+      EXPECT_EQ(geodesic.limits.at(0).lowest_slack, full.limits.at(0).lowest_slack);
+      EXPECT_EQ(geodesic.trajectory.t.size(), static_cast<std::size_t>(samples));
+    }
+  }
+}
+
 // What does not keep to limits says so, instead of an answer that is beyond them.
 TEST(LimitedGeodesics, AreNotLeftToWhatKnowsNoLimits) {
   const BoundaryValueProblem problem = parking("limit -0.3 < phi - theta < 0.3\n");

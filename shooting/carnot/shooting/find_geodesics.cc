@@ -147,6 +147,9 @@ GeodesicReport find_without_limits(const BoundaryValueProblem& asked,
     found.problems.back().to = image.to;
     GeodesicOptions of_image = options;
     of_image.time_limit = deadline.left();
+    for (int j = 0; j < problem.dynamics.dof && !of_image.guess.empty(); ++j) {
+      if (problem.is_free_from(j)) of_image.guess[j] -= origin_of(asked)[j];
+    }
     search_image(of_image, found);
     const bool stayed = !found.list.empty() && found.list.back().geodesic.action == 0;
     if (!found.finished || found.timed_out || (stayed && !options.all && options.count == 1)) break;
@@ -183,6 +186,26 @@ GeodesicReport find_without_limits(const BoundaryValueProblem& asked,
   return report;
 }
 
+// Every so many-th sample, such that about two thousand are looked at.
+long dense_stride(long samples) {
+  constexpr long kDense = 2048;
+  return std::max(1L, (kDense + std::max(1L, samples - 1) - 1) / std::max(1L, samples - 1));
+}
+
+// So many samples of a trajectory that has `stride` times as many intervals.
+Trajectory every(const Trajectory& dense, long stride, long samples) {
+  Trajectory some;
+  for (long i = 0; i < samples; ++i) {
+    const std::size_t at = samples == 1 ? dense.t.size() - 1 : static_cast<std::size_t>(i * stride);
+    some.t.push_back(dense.t[at]);
+    some.q.push_back(dense.q[at]);
+    some.p.push_back(dense.p[at]);
+    some.lambda.push_back(dense.lambda[at]);
+    some.hamiltonian.push_back(dense.hamiltonian[at]);
+  }
+  return some;
+}
+
 // The least of what each image of the target gives, where limits are kept to.
 GeodesicReport find_with_limits(const BoundaryValueProblem& asked, const GeodesicOptions& options) {
   constexpr std::size_t kImages = 4;
@@ -199,23 +222,36 @@ GeodesicReport find_with_limits(const BoundaryValueProblem& asked, const Geodesi
   problem.limits.clear();
   // A few starts tell whether the least action is beyond a limit. Only where it is not must it be
   // known for sure: then it is the answer.
-  GeodesicOptions few = options;
+  GeodesicOptions all_starts = options;
+  const long stride = dense_stride(options.samples);  // paths are judged at many times
+  all_starts.samples = stride * std::max(1L, options.samples - 1) + 1;
+  GeodesicOptions few = all_starts;
   if (options.starts == 0 && options.guess.empty()) few.starts = kFewStarts;
   report = find_without_limits(problem, few);
   const bool keeps = !report.geodesics.empty() && is_within_limits(asked, report.geodesics.front());
   if (few.starts != options.starts && report.status != GeodesicStatus::kInterrupted && keeps) {
-    report = find_without_limits(problem, options);
+    all_starts.time_limit = deadline.left() > 0 ? deadline.left() : few.time_limit;
+    if (deadline.left() > 0) report = find_without_limits(problem, all_starts);
   }
   if (report.status == GeodesicStatus::kInterrupted) return report;
   std::vector<Image> images{{asked.to, {}}};
   if (options.mod_angles) images = images_of_target(asked, options.max_length);
-  if (images.size() > kImages) images.resize(kImages);
+  // The nearest images, and all that an extremal without limits was found for.
+  const auto is_known = [&](const Image& image) {
+    return std::any_of(report.geodesics.begin(), report.geodesics.end(), [&](const Geodesic& g) {
+      return g.windings == image.windings;
+    });
+  };
+  std::stable_partition(images.begin(), images.end(), is_known);
+  const auto known_images = std::count_if(images.begin(), images.end(), is_known);
+  const std::size_t most = std::max(kImages, static_cast<std::size_t>(known_images));
+  if (images.size() > most) images.resize(most);
   const std::vector<Geodesic> known = std::exchange(report.geodesics, {});
   report.missed_estimate.reset();  // it counts extremals without limits
   report.reason = Reason::kNone;
   problem.limits = asked.limits;
   bool finished = true;
-  bool timed_out = false;
+  bool timed_out = deadline.left() == 0;
   for (const Image& image : images) {
     problem.to = image.to;
     std::vector<Geodesic> of_image;
@@ -231,6 +267,9 @@ GeodesicReport find_with_limits(const BoundaryValueProblem& asked, const Geodesi
     report.converged_starts += answer.converged;
     for (Geodesic& geodesic : answer.geodesics) {
       geodesic.windings = image.windings;
+      if (geodesic.trajectory.t.size() == static_cast<std::size_t>(all_starts.samples)) {
+        geodesic.trajectory = every(geodesic.trajectory, stride, options.samples);
+      }
       report.geodesics.push_back(std::move(geodesic));
     }
     if (report.reason == Reason::kNone) {

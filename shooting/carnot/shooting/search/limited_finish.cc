@@ -99,7 +99,8 @@ std::optional<Geodesic> LimitedFinish::by_pieces(const BoundExtremal& extremal,
     const int wall = piece.leaves();
     if (wall >= 0) {
       const double unit = shared_.interior.rate / shared_.interior.sizes[wall];
-      if (measured.least_multiplier < kPull * unit || piece.release < kPull * unit) {
+      if (measured.least_multiplier < kPull * unit ||
+          piece.release < kPull * unit * shared_.problem.time) {
         return std::nullopt;
       }
       LimitReport& limit = geodesic.limits[shared_.walls[wall].limit];
@@ -163,6 +164,17 @@ Geodesic LimitedFinish::on_grid(const Candidate& candidate, double coarse_action
   geodesic.from.assign(path.configuration(0), path.configuration(1));
   geodesic.to.assign(path.configuration(path.intervals), path.configuration(path.intervals) + n);
   geodesic.p0.assign(path.momentum(0), path.momentum(0) + n);
+  std::vector<double> end = geodesic.to;
+  end.insert(end.end(), path.momentum(path.intervals), path.momentum(path.intervals) + n);
+  // A free end that is stopped by a wall has the momentum of its multiplier.
+  std::vector<double> s(m);
+  std::vector<double> gradients(static_cast<std::size_t>(m) * n);
+  shared_.walls.evaluate(end.data(), s.data(), gradients.data(), nullptr);
+  for (int w = 0; w < m; ++w) {
+    const std::size_t last = static_cast<std::size_t>(path.intervals) * m + w;
+    for (int j = 0; j < n; ++j) end[n + j] -= h * candidate.limited.nu[last] * gradients[w * n + j];
+  }
+  geodesic.transversality_error = transversality_error(shared_.problem, end.data());
   // The error of the midpoint rule is a quarter of that on the grid before.
   geodesic.action = candidate.action + (candidate.action - coarse_action) / 3;
   geodesic.grid_error = std::abs(candidate.action - coarse_action) / 3;
@@ -259,7 +271,9 @@ bool LimitedFinish::settle(Candidate& candidate) const {
   for (int round = 0; round < kRounds; ++round) {
     options.first_mu = std::max(candidate.mu, kLeastMu);
     const Walls walls(limits, shared_.problem.dynamics.dof);
-    if (!interior_point(shared_.problem, walls, options, candidate.limited).converged) return false;
+    const InteriorPoint solved = interior_point(shared_.problem, walls, options, candidate.limited);
+    if (!solved.converged) return false;
+    candidate.minimum = solved.minimum;
     candidate.mu = kLeastMu;
     Geodesic judged;
     shared_.report_limits(points_along(candidate.limited.path), judged);

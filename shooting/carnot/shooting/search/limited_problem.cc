@@ -132,7 +132,8 @@ void LimitedProblem::report_limits(const std::vector<std::vector<double>>& q,
   for (const Limit& limit : problem.limits) {
     LimitReport report;
     report.name = limit.name;
-    report.lowest_slack = std::numeric_limits<double>::infinity();
+    // What was looked at nowhere keeps to nothing.
+    report.lowest_slack = std::numeric_limits<double>::infinity() * (q.empty() ? -1 : 1);
     for (const auto& at : q) {
       const double slack = limit.slack(limit.value(at.data(), nullptr, nullptr));
       report.lowest_slack = slack >= report.lowest_slack ? report.lowest_slack : slack;

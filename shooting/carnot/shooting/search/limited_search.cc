@@ -145,7 +145,7 @@ void LimitedSearch::note(std::optional<Candidate> candidate) {
       extent = std::max(extent, std::abs(path.q[j] - path.q[j % path.dof]));
     }
     if (known.tried || apart > kSame * extent) continue;
-    if (std::abs(known.action - candidate->action) > kSameOnGrid * known.action) continue;
+    if (std::abs(known.action - candidate->action) > kSameOnGrid * std::abs(known.action)) continue;
     candidate->hits += known.hits;
     if (known.action < candidate->action) std::swap(known.limited, candidate->limited);
     candidate->action = std::min(known.action, candidate->action);
@@ -245,7 +245,7 @@ LimitedAnswer LimitedSearch::run() {
     if (answer.timed_out) break;
     if (options_.progress && !options_.progress(static_cast<double>(answer.starts) / most)) {
       answer.finished = false;
-      break;
+      return answer;
     }
     const int count = std::min(kRound, most - answer.starts);
     std::vector<std::optional<Candidate>> found(count);
