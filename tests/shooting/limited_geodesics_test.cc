@@ -309,7 +309,7 @@ TEST(BoundArcs, JoinQuadratically) {
   ASSERT_TRUE(measured.completed);
   EXPECT_NEAR(measured.summary.action, kParking, 1e-8);
   EXPECT_EQ(measured.summary.trajectory.t.size(), 3U);
-  EXPECT_GE(measured.least_multiplier, 0);
+  for (const double nu : measured.least_multiplier) EXPECT_EQ(nu, 0);
 }
 
 }  // namespace

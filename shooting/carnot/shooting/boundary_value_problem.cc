@@ -24,13 +24,17 @@ void check_end(const char* name, const std::vector<double>& q, const Dynamics& d
   }
 }
 
+bool any(const std::vector<bool>& free) {
+  return std::find(free.begin(), free.end(), true) != free.end();
+}
+
 void check_free(const char* name, const std::vector<bool>& free, const Dynamics& dynamics) {
   if (free.empty()) return;
   if (static_cast<int>(free.size()) != dynamics.dof) {
     throw std::invalid_argument(std::string(name) + " has " + std::to_string(free.size()) +
                                 " components, the scene has " + std::to_string(dynamics.dof));
   }
-  if (dynamics.holonomic > 0 && std::find(free.begin(), free.end(), true) != free.end()) {
+  if (dynamics.holonomic > 0 && any(free)) {
     throw std::invalid_argument(
         "a free coordinate on a manifold h(q) = 0, which ties it to the others");
   }
@@ -48,12 +52,8 @@ RateStatus end_status(const Dynamics& dynamics, const std::vector<double>& q) {
   return at_rest ? RateStatus::kOk : status;
 }
 
-bool BoundaryValueProblem::has_free_ends() const {
-  const auto any = [](const std::vector<bool>& free) {
-    return std::find(free.begin(), free.end(), true) != free.end();
-  };
-  return any(free_from) || any(free_to);
-}
+bool BoundaryValueProblem::has_free_ends() const { return any(free_from) || any(free_to); }
+bool BoundaryValueProblem::has_free_target() const { return any(free_to); }
 
 void BoundaryValueProblem::validate() const {
   check_end("from", from, dynamics);

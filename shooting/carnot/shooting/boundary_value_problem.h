@@ -38,6 +38,7 @@ struct BoundaryValueProblem {
   [[nodiscard]] bool is_free_from(int j) const { return !free_from.empty() && free_from[j]; }
   [[nodiscard]] bool is_free_to(int j) const { return !free_to.empty() && free_to[j]; }
   [[nodiscard]] bool has_free_ends() const;
+  [[nodiscard]] bool has_free_target() const;
 
   // Throws std::invalid_argument: wrong lengths, values that are not finite, T <= 0, constraints
   // that are dependent at an end, free ends on a manifold h(q) = 0.

@@ -88,6 +88,17 @@ std::string time_is_up(double seconds, const std::string& message) {
   return message.empty() ? text.str() : text.str() + "; " + message;
 }
 
+// What every report ends with.
+void close(bool finished, std::chrono::steady_clock::time_point began, GeodesicReport& report) {
+  if (!finished) {
+    report.status = GeodesicStatus::kInterrupted;
+    report.reason = Reason::kInterrupted;
+    report.message = "interrupted";
+  }
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - began;
+  report.elapsed_seconds = elapsed.count();
+}
+
 // What the searches for all images of the target gave.
 struct Found {
   std::vector<BoundaryValueProblem> problems;  // one for each image
@@ -176,13 +187,7 @@ GeodesicReport find_without_limits(const BoundaryValueProblem& asked,
     report.message = found.failure.message;
   }
   if (found.timed_out) report.message = time_is_up(options.time_limit, report.message);
-  if (!found.finished) {
-    report.status = GeodesicStatus::kInterrupted;
-    report.reason = Reason::kInterrupted;
-    report.message = "interrupted";
-  }
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - began;
-  report.elapsed_seconds = elapsed.count();
+  close(found.finished, began, report);
   return report;
 }
 
@@ -290,13 +295,7 @@ GeodesicReport find_with_limits(const BoundaryValueProblem& asked, const Geodesi
     report.message.clear();
   }
   if (timed_out) report.message = time_is_up(options.time_limit, report.message);
-  if (!finished) {
-    report.status = GeodesicStatus::kInterrupted;
-    report.reason = Reason::kInterrupted;
-    report.message = "interrupted";
-  }
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - began;
-  report.elapsed_seconds = elapsed.count();
+  close(finished, began, report);
   return report;
 }
 

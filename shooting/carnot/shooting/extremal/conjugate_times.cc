@@ -287,7 +287,7 @@ ConjugateTimes follow(double fraction,
   if (!count_to(static_cast<int>(std::lround(planes.count(frame, tolerance))), frame))
     return result;
   result.times.insert(result.times.end(), result.at_end, problem.time);
-  if (std::find(problem.free_to.begin(), problem.free_to.end(), true) != problem.free_to.end()) {
+  if (problem.has_free_target()) {
     if (graph->kernel > 0) return result;  // not all movements of the target are possible then
     result.target = planes.form_at(frame, problem, std::max(options.doubt, planes.doubt()));
   }

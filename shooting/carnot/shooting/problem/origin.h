@@ -14,7 +14,8 @@ std::vector<int> movable(const SceneInfo& info);
 // free, to the target.
 std::vector<double> origin_of(const BoundaryValueProblem& problem);
 
-// The same problem with these coordinates of the start at zero, where they cost no digits.
+// The same problem with these coordinates of the start, or of the target where that is free, at
+// zero, where they cost no digits.
 BoundaryValueProblem at_origin(const BoundaryValueProblem& problem);
 
 }  // namespace carnot::internal

@@ -1,8 +1,6 @@
 #include "carnot/shooting/problem/walls.h"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace carnot::internal {
 
@@ -34,14 +32,6 @@ void Walls::evaluate(const double* q, double* s, double* gradients, double* hess
       hessians[i * n_ * n_ + j] = wall.sign * hessian[j];
     }
   }
-}
-
-double Walls::least(const double* q) const {
-  std::vector<double> s(size());
-  evaluate(q, s.data(), nullptr, nullptr);
-  double least = std::numeric_limits<double>::infinity();
-  for (const double x : s) least = x >= least ? least : x;  // a NaN stays
-  return least;
 }
 
 }  // namespace carnot::internal

@@ -24,8 +24,6 @@ class Walls {
 
   // At q: all s and, unless null, their gradients (size x n) and second derivatives (size x n x n).
   void evaluate(const double* q, double* s, double* gradients, double* hessians) const;
-  // The least s at q.
-  [[nodiscard]] double least(const double* q) const;
 
  private:
   const std::vector<Limit>& limits_;

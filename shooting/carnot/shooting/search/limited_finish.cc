@@ -99,7 +99,7 @@ std::optional<Geodesic> LimitedFinish::by_pieces(const BoundExtremal& extremal,
     const int wall = piece.leaves();
     if (wall >= 0) {
       const double unit = shared_.interior.rate / shared_.interior.sizes[wall];
-      if (measured.least_multiplier < kPull * unit ||
+      if (!(measured.least_multiplier[k] >= kPull * unit) ||
           piece.release < kPull * unit * shared_.problem.time) {
         return std::nullopt;
       }

@@ -67,14 +67,9 @@ void LimitedProblem::set_sizes(const std::vector<Geodesic>& free) {
 }
 
 bool LimitedProblem::keeps_to_limits(const Geodesic& geodesic, double beyond) const {
-  for (const LimitReport& limit : geodesic.limits) {
-    double size = std::numeric_limits<double>::infinity();
-    for (int w = 0; w < walls.size(); ++w) {
-      if (problem.limits[walls[w].limit].name == limit.name) {
-        size = std::min(size, interior.sizes[w]);
-      }
-    }
-    if (!(limit.lowest_slack >= -beyond * size)) return false;
+  for (int w = 0; w < walls.size(); ++w) {
+    const LimitReport& limit = geodesic.limits[walls[w].limit];
+    if (!(limit.lowest_slack >= -beyond * interior.sizes[w])) return false;
   }
   return true;
 }

@@ -1,4 +1,5 @@
-// Starts of the search for scenes without a midpoint transcription: random momenta at `from`.
+// Starts of the search for scenes without a midpoint transcription: random momenta at `from`, with
+// the coordinate itself where the start is free (ends.h).
 #pragma once
 
 #include <cstdint>

@@ -44,7 +44,7 @@ MultiplierRange multipliers(const Walls& walls,
     const double eta = eta_at(walls, terms, piece.wall, at.data(), dynamics.dof);
     if (i > 0) {
       const double nu = (eta - before) / (path.t[i] - path.t[i - 1]);
-      range.least = std::min(range.least, nu);
+      range.least = nu >= range.least ? range.least : nu;  // a NaN stays
       range.largest = std::max(range.largest, nu);
     }
     before = eta;
@@ -110,6 +110,7 @@ BoundSurvey survey_pieces(const BoundaryValueProblem& problem,
     const double duration = (piece.end - start) / piece.segments;
     const long count = steps_of(problem, piece, start, steps);
     double largest = 0;
+    double least = 0;
     for (int i = 0; i < piece.segments; ++i) {
       const bool ends = i + 1 == piece.segments;
       const bool last = ends && k + 1 == extremal.pieces.size();
@@ -120,7 +121,7 @@ BoundSurvey survey_pieces(const BoundaryValueProblem& problem,
         const MultiplierRange range =
             multipliers(walls, terms, dynamics, piece, StepPlan::equal(from, to - from, count), z);
         largest = std::max(largest, range.largest);
-        result.least_multiplier = std::min(result.least_multiplier, range.least);
+        least = range.least >= least ? least : range.least;
       }
       MonitorOptions options;
       for (const double t : times) {
@@ -156,6 +157,7 @@ BoundSurvey survey_pieces(const BoundaryValueProblem& problem,
       }
     }
     result.largest_multiplier.push_back(largest);
+    result.least_multiplier.push_back(least);
     start = piece.end;
   }
   result.completed = true;

@@ -15,7 +15,7 @@ struct BoundSurvey {
   double defect = 0;
   std::vector<double> end;                 // z(T)
   std::vector<double> largest_multiplier;  // nu, of each piece
-  double least_multiplier = 0;
+  std::vector<double> least_multiplier;    // zero where it is nowhere negative; NaN: not known
 };
 BoundSurvey survey_pieces(const BoundaryValueProblem& problem,
                           const Walls& walls,

@@ -3,7 +3,8 @@
 // SLSQP takes the jumps as equality constraints on the unknowns at the start, z_1, ..., stacked,
 // and minimises nothing, so that each iteration is a Newton step of least norm. The others minimise
 // half the sum of the squared jumps: L-BFGS over the same unknowns; MLSL, ISRES and CRS, which
-// search a box, over p(0) only, in a box around the guess. What they reach, SLSQP joins.
+// search a box, over the unknowns of the start only, in a box around the guess. What they reach,
+// SLSQP joins.
 #include <algorithm>
 #include <array>
 #include <cmath>

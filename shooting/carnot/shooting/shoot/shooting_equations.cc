@@ -12,12 +12,8 @@ ShootingEquations::ShootingEquations(const BoundaryValueProblem& problem,
                                      const Knots& knots,
                                      long steps)
     : problem_(problem), segments_(knots.segments), dof_(knots.dof), steps_(steps) {
-  double q_scale = 0;
+  double q_scale = distance_between_ends(problem);
   double p_scale = 0;
-  for (int j = 0; j < dof_; ++j) {
-    if (problem.is_free_from(j) || problem.is_free_to(j)) continue;
-    q_scale = std::max(q_scale, std::abs(problem.to[j] - problem.from[j]));
-  }
   for (int i = 0; i <= segments_; ++i) {
     for (int j = 0; j < dof_; ++j) {
       q_scale = std::max(q_scale, std::abs(knots.at(i)[j] - knots.at(0)[j]));
