@@ -92,7 +92,7 @@ ContinuationReport run(const ContinueRequest& request) {
   GeodesicOptions search;
   search.count = request.rank;
   search.guess = request.guess;
-  search.tolerance = request.options.tolerance;
+  search.absolute_tolerance = request.options.tolerance;
   search.time_limit = request.time_limit;
   search.seed = request.run.seed;
   search.threads = request.run.threads;

@@ -57,7 +57,7 @@ struct GeodesicCall {
   bool all = false;
   std::string max_length;
   std::string starts;
-  std::string tolerance = "1e-10";
+  std::string tolerance;
   std::string minimiser = "newton";
   std::string guess;
   std::string time_limit;
@@ -92,7 +92,9 @@ GeodesicOptions check_search(const GeodesicCall& options, const Run& run) {
   if (!options.starts.empty()) {
     search.starts = static_cast<int>(parse_integer("--starts", options.starts, 1, kMostStarts));
   }
-  search.tolerance = parse_tolerance("--tolerance", options.tolerance);
+  if (!options.tolerance.empty()) {
+    search.absolute_tolerance = parse_tolerance("--tolerance", options.tolerance);
+  }
   search.minimiser = check_minimiser(options.minimiser);
   if (!options.guess.empty()) {
     search.guess = parse_vector("--guess", options.guess, coordinate_names(*run.entry));
@@ -138,7 +140,10 @@ void add_search_options(CLI::App& app, GeodesicCall& options) {
   app.add_flag("--all", options.all, "every extremal that is found, instead of --count");
   add("--max-length", options.max_length, "A", "leave out longer ones");
   add("--starts", options.starts, "N", "paths to start from (as many as the task needs)");
-  add("--tolerance", options.tolerance, "TOL", "largest error at the end (1e-10)");
+  add("--tolerance",
+      options.tolerance,
+      "TOL",
+      "largest error at the end (1e-10 of the problem's own scales)");
   add("--minimiser",
       options.minimiser,
       "NAME",

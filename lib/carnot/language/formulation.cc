@@ -490,10 +490,9 @@ class Formulator {
     if (metric) metric_control(frame, weight);
   }
 
-  // The velocities as those of a projector; see admissible_velocities.h.
-  void metric_control(const SymbolicMatrix& frame, const SymbolicMatrix& weight) {
+  // (F'F)^-1, made regular.
+  SymbolicCholesky square_of(const SymbolicMatrix& frame) {
     constexpr double kRegular = 1e-14;
-    const int n = frame.rows;
     const int c = frame.columns;
     const SymbolicMatrix frame_t = transposed(graph_, frame);
     SymbolicMatrix square = product(graph_, frame_t, frame);
@@ -501,7 +500,24 @@ class Formulator {
     for (int i = 0; i < c; ++i) trace.push_back(square(i, i));
     const Expression small = kRegular * graph_.sum(trace);
     for (int i = 0; i < c; ++i) square(i, i) = square(i, i) + small;
-    const SymbolicCholesky factor(graph_, square);
+    return SymbolicCholesky(graph_, square);
+  }
+
+  // The velocities as those of a projector; see admissible_velocities.h. There are no momenta in
+  // it, nor the time: their variables hold one over the units of the coordinates, and kappa.
+  void metric_control(const SymbolicMatrix& own_frame, const SymbolicMatrix& weight) {
+    const int n = own_frame.rows;
+    const int c = own_frame.columns;
+    const SymbolicVector v = velocities();
+    const SymbolicVector own_controls =
+        square_of(own_frame).solve(transposed_product(graph_, own_frame, v));
+    out_.square_speed = dot(graph_, own_controls, product(graph_, weight, own_controls));
+    const SymbolicVector per_unit = variables(kMomentum, n);
+    SymbolicMatrix frame = own_frame;
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < c; ++j) frame(i, j) = per_unit[i] * frame(i, j);
+    }
+    const SymbolicCholesky factor = square_of(frame);
     SymbolicMatrix w(graph_, c, n);
     for (int j = 0; j < n; ++j) {
       SymbolicVector row;
@@ -520,16 +536,16 @@ class Formulator {
       }
     }
     formulas.potential = graph_.number(0);
-    const SymbolicVector v = velocities();
     const SymbolicVector lambda = variables(kMultiplier, n);
+    const Expression kappa = graph_.variable(kTime.first);
     const SymbolicVector b = transposed_product(graph_, frame, lambda);
     const SymbolicVector u = factor.solve(transposed_product(graph_, frame, v));
     const Expression running = dot(graph_, u, product(graph_, weight, u));
-    formulas.lagrangian = graph_.sum(SymbolicVector{0.5 * running,
-                                                    -(0.5 * dot(graph_, b, factor.solve(b))),
-                                                    dot(graph_, b, u),
-                                                    -dot(graph_, lambda, v)});
-    out_.square_speed = running;
+    formulas.lagrangian =
+        graph_.sum(SymbolicVector{0.5 * running,
+                                  -(0.5 * kappa * dot(graph_, b, factor.solve(b))),
+                                  dot(graph_, b, u),
+                                  -dot(graph_, lambda, v)});
     out_.transcription = std::move(formulas);
   }
 

@@ -427,18 +427,35 @@ bool tangent_projector(const void* opaque, double t, const double* z, double* pr
 
 // ---- of the transcription
 
-void entries(const void* opaque, const double* q, bool slopes, double* out) {
+// The units of a gauge as the tapes take them: in the place of momenta and of the time, which do
+// not occur there.
+struct UnitInputs {
+  std::array<double, kMostDof> per_unit;
+  double weight;
+
+  UnitInputs(const GaugeUnits& units, int n) : weight(units.weight) {
+    for (int j = 0; j < n; ++j) per_unit[j] = units.q != nullptr ? 1 / units.q[j] : 1;
+  }
+};
+
+void entries(
+    const void* opaque, const double* q, const GaugeUnits& units, bool slopes, double* out) {
   const TextSystem& s = system_of(opaque);
-  const double t = 0;
+  const UnitInputs in(units, s.dof);
   const Tape& tape = slopes ? s.slopes : s.entries;
-  tape.run(at(t, q, kIdle.data(), kIdle.data()), std::array<double*, 1>{out});
+  tape.run(at(in.weight, q, in.per_unit.data(), kIdle.data()), std::array<double*, 1>{out});
 }
 
-void lagrangian_hessian(
-    const void* opaque, const double* q, const double* v, const double* lambda, double* l_qq) {
-  const double t = 0;
-  system_of(opaque).lagrangian_hessian.run(at_velocity(t, q, v, lambda),
-                                           std::array<double*, 1>{l_qq});
+void lagrangian_hessian(const void* opaque,
+                        const double* q,
+                        const double* v,
+                        const double* lambda,
+                        const GaugeUnits& units,
+                        double* l_qq) {
+  const TextSystem& s = system_of(opaque);
+  const UnitInputs in(units, s.dof);
+  s.lagrangian_hessian.run(Groups{&in.weight, q, in.per_unit.data(), kIdle.data(), v, lambda},
+                           std::array<double*, 1>{l_qq});
 }
 
 }  // namespace

@@ -3,13 +3,17 @@
 //
 // With W = (F'F)^-1 F' the velocity v = F u has the controls u = W v and costs v'(W'R W)v/2, and v
 // is admissible where C v = 0, C = I - F W. C is a projector: of its n rows only n - c are
-// independent, so lambda is determined up to the range of P = F W. The term lambda'P lambda/2 of
-// the discrete Lagrangian (midpoint_transcription.h) picks P lambda = 0 and changes nothing else.
-// Where F loses rank, F'F + epsilon trace(F'F) I stands for F'F = N.
+// independent, so lambda is determined up to the range of P = kappa F W. The term lambda'P lambda/2
+// of the discrete Lagrangian (midpoint_transcription.h) picks P lambda = 0 and changes nothing
+// else. Where F loses rank, F'F + epsilon trace(F'F) I stands for F'F = N.
+//
+// What the inverse W is, and so what the Lagrangian says of velocities that are not admissible,
+// depends on the units of the coordinates. They may be chosen: with units D the velocity D^-1 v and
+// the frame D^-1 F take the places of v and F.
 //
 // The Lagrangian itself needs no n x n products: with b = F'lambda, w = N^-1 F'v and w_l = N^-1 b,
 //
-//   l = w'R w/2 + b.w - b.w_l/2 - lambda.v.
+//   l = w'R w/2 + b.w - kappa b.w_l/2 - lambda.v.
 #pragma once
 
 #include "carnot/numerics/cholesky.h"
@@ -27,11 +31,13 @@ struct AdmissibleVelocities {
   static constexpr int kControls = Scene::kControls;
 
   Scene scene;
+  Vector<double, kDof> per_unit = Vector<double, kDof>::Ones();  // of D^-1
+  double weight = 1;                                             // kappa
 
   // W'R W.
   template <class T>
   [[nodiscard]] Matrix<T, kDof, kDof> mass(const Vector<T, kDof>& q) const {
-    const Matrix<T, kControls, kDof> w = controls(Matrix<T, kDof, kControls>(scene.frame(q)));
+    const Matrix<T, kControls, kDof> w = controls(frame(q));
     if constexpr (HasControlWeight<Scene>) {
       const Matrix<T, kControls, kDof> rw = product(scene.control_weight(q), w);
       return product(w.transpose(), rw);
@@ -48,10 +54,10 @@ struct AdmissibleVelocities {
     return c;
   }
 
-  // P.
+  // P / kappa.
   template <class T>
   [[nodiscard]] Matrix<T, kDof, kDof> gauge(const Vector<T, kDof>& q) const {
-    const Matrix<T, kDof, kControls> f = scene.frame(q);
+    const Matrix<T, kDof, kControls> f = frame(q);
     return product(f, controls(f));
   }
 
@@ -61,17 +67,27 @@ struct AdmissibleVelocities {
                                     const Vector<double, kDof>& v,
                                     const Vector<double, kDof>& lambda) const {
     using Controls = Vector<T, kControls>;
-    const Matrix<T, kDof, kControls> f = scene.frame(q);
+    const Matrix<T, kDof, kControls> f = frame(q);
     const Cholesky<T, kControls> square(regular_square(f));
     const Controls b = transposed_times(f, lambda);
     const Controls w = square.solve(transposed_times(f, v));
     const Controls w_l = square.solve(b);
     Controls rw = w;
     if constexpr (HasControlWeight<Scene>) rw = product(scene.control_weight(q), w);
-    return 0.5 * (dot(w, rw) - dot(b, w_l)) + dot(b, w) - lambda.dot(v);
+    return 0.5 * (dot(w, rw) - weight * dot(b, w_l)) + dot(b, w) - lambda.dot(v);
   }
 
  private:
+  // D^-1 F.
+  template <class T>
+  [[nodiscard]] Matrix<T, kDof, kControls> frame(const Vector<T, kDof>& q) const {
+    Matrix<T, kDof, kControls> f = scene.frame(q);
+    for (int i = 0; i < kDof; ++i) {
+      for (int j = 0; j < kControls; ++j) f(i, j) *= constant<T>(per_unit[i]);
+    }
+    return f;
+  }
+
   // F'x.
   template <class T>
   static Vector<T, kControls> transposed_times(const Matrix<T, kDof, kControls>& f,

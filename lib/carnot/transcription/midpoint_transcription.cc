@@ -84,7 +84,7 @@ Entries<known> entries_at(const TranscriptionFunctions& functions,
                           const void* system,
                           const double* q,
                           double* memory) {
-  functions.entries(system, q, known > 1, memory);
+  functions.entries(system, q, {}, known > 1, memory);
   return {functions.dof, functions.constraints, Rows<known>(memory)};
 }
 
@@ -248,7 +248,7 @@ void derivatives_of(const TranscriptionFunctions& functions,
   }
   for (int i = 0; i < k; ++i) gradient[2 * n + i] = -h * g[i][0];
   if (hessian == nullptr) return;
-  functions.hessian(system, qm, v, lambda, l_qq);
+  functions.hessian(system, qm, v, lambda, {}, l_qq);
   // Entry (row, column) and its mirror image.
   const auto set = [&](int row, int column, double value) {
     hessian[column * m + row] = hessian[row * m + column] = value;

@@ -24,6 +24,22 @@ auto transcription(const OptimalControl<Scene>& system) {
   return VelocityConstraints<AdmissibleVelocities<Scene>>({system.scene()});
 }
 
+// run(the system, with velocities in these units). Only a gauge has units, see
+// transcription_functions.h.
+template <class Scene, class Run>
+void with_units(const VelocityConstraints<Scene>& system, const GaugeUnits&, const Run& run) {
+  run(system);
+}
+template <class Scene, class Run>
+void with_units(const OptimalControl<Scene>& system, const GaugeUnits& units, const Run& run) {
+  AdmissibleVelocities<Scene> velocities{system.scene()};
+  for (int j = 0; units.q != nullptr && j < Scene::kDof; ++j) {
+    velocities.per_unit[j] = 1 / units.q[j];
+  }
+  velocities.weight = units.weight;
+  run(VelocityConstraints<AdmissibleVelocities<Scene>>(velocities));
+}
+
 template <class System>
 struct IsTranscribed : std::false_type {};
 template <class Scene>
@@ -65,25 +81,29 @@ void write_entries(const VelocityConstraints<Scene>& system,
 }
 
 template <class B>
-void transcription_entries(const void* opaque, const double* q, bool slopes, double* out) {
-  const auto& system = transcription(B::from(opaque).system);
+void transcription_entries(
+    const void* opaque, const double* q, const GaugeUnits& units, bool slopes, double* out) {
   const Vector<double, B::n> at = view<B::n>(q);
-  if (slopes) {
-    write_entries(system, seeded(at), out);
-  } else {
-    write_entries(system, at, out);
-  }
+  with_units(B::from(opaque).system, units, [&](const auto& system) {
+    if (slopes) {
+      write_entries(system, seeded(at), out);
+    } else {
+      write_entries(system, at, out);
+    }
+  });
 }
 
 // l is linear in M, G and V, so that no product of Jets is formed.
-template <class B>
-void transcription_hessian(
-    const void* opaque, const double* q, const double* v, const double* lambda, double* l_qq) {
-  constexpr int n = B::n;
+template <class Transcribed>
+void lagrangian_hessian(const VelocityConstraints<Transcribed>& system,
+                        const double* q,
+                        const double* v,
+                        const double* lambda,
+                        double* l_qq) {
+  constexpr int n = Transcribed::kDof;
   using T = Jet<Jet<double, n>, n>;
-  const auto& system = transcription(B::from(opaque).system);
   const auto& scene = system.scene();
-  using Scene = std::decay_t<decltype(scene)>;
+  using Scene = Transcribed;
   constexpr int k = Scene::kMultipliers;
   const Vector<T, n> x = seeded(seeded(Vector<double, n>(view<n>(q))));
   for (int d = 0; d < n * n; ++d) l_qq[d] = 0;
@@ -109,6 +129,18 @@ void transcription_hessian(
       }
     }
   }
+}
+
+template <class B>
+void transcription_hessian(const void* opaque,
+                           const double* q,
+                           const double* v,
+                           const double* lambda,
+                           const GaugeUnits& units,
+                           double* l_qq) {
+  with_units(B::from(opaque).system, units, [&](const auto& system) {
+    lagrangian_hessian(system, q, v, lambda, l_qq);
+  });
 }
 
 template <class B>

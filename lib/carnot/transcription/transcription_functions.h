@@ -3,21 +3,37 @@
 
 namespace carnot {
 
+// What the numbers of a gauge are in; see TranscriptionFunctions.
+struct GaugeUnits {
+  const double* q = nullptr;  // n units, of velocities and multipliers; null: one
+  double weight = 1;          // kappa
+};
+
 // All arrays belong to the caller. q and v have n entries, lambda has k.
 struct TranscriptionFunctions {
   int dof = 0;          // n
   int constraints = 0;  // k
-  // Rows of G depend on each other: G is a projector, and P = I - G is the gauge.
+  // Rows of G depend on each other: G is an orthogonal projector, and P = kappa (I - G) is the
+  // gauge. In which units of the coordinates it is orthogonal may be chosen; velocities and
+  // multipliers are then in these units, too. What is no gauge has no such units.
   bool gauge = false;
 
   // The entries of M at or below its diagonal, row by row, then those of G, row by row, then V: all
   // at q. With slopes each of them is the first number of a row of row_length(n), its n derivatives
   // by q are the next ones, and zeros fill the row.
-  void (*entries)(const void* system, const double* q, bool slopes, double* out);
+  void (*entries)(const void* system,
+                  const double* q,
+                  const GaugeUnits& units,
+                  bool slopes,
+                  double* out) = nullptr;
   // The second derivatives by q, n x n, of l = v'M v/2 - V - lambda'G v - lambda'P lambda/2, where
   // P is zero without a gauge.
-  void (*hessian)(
-      const void* system, const double* q, const double* v, const double* lambda, double* l_qq);
+  void (*hessian)(const void* system,
+                  const double* q,
+                  const double* v,
+                  const double* lambda,
+                  const GaugeUnits& units,
+                  double* l_qq) = nullptr;
 };
 
 // How many entries there are.

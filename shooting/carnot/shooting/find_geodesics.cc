@@ -12,7 +12,9 @@
 #include "carnot/shooting/extremal/ranking.h"
 #include "carnot/shooting/linear/round_off.h"
 #include "carnot/shooting/problem/ends.h"
+#include "carnot/shooting/problem/natural_scales.h"
 #include "carnot/shooting/problem/origin.h"
+#include "carnot/shooting/problem/rescaled.h"
 #include "carnot/shooting/problem/windings.h"
 #include "carnot/shooting/search/deadline.h"
 #include "carnot/shooting/search/failure.h"
@@ -99,9 +101,50 @@ void close(bool finished, std::chrono::steady_clock::time_point began, GeodesicR
   report.elapsed_seconds = elapsed.count();
 }
 
+// Options in natural scales, for a problem moved by `origin`.
+GeodesicOptions in_scales(const NaturalScales& scales,
+                          const BoundaryValueProblem& problem,
+                          const std::vector<double>& origin,
+                          GeodesicOptions options) {
+  if (options.absolute_tolerance) {
+    const double largest = *std::max_element(scales.q.begin(), scales.q.end());
+    options.tolerance = *options.absolute_tolerance / largest;
+  }
+  options.max_length /= scales.length();
+  for (std::size_t j = 0; j < options.guess.size(); ++j) {
+    double& x = options.guess[j];
+    const int coordinate = static_cast<int>(j);
+    x = problem.is_free_from(coordinate) ? (x - origin[j]) / scales.q[j]
+                                         : x / scales.momentum(coordinate);
+  }
+  return options;
+}
+
+// From the natural scales of `problem` to its own units, where errors are measured again.
+void finish(const BoundaryValueProblem& problem, const NaturalScales& scales, Extremal& extremal) {
+  Geodesic& geodesic = extremal.geodesic;
+  put_in_own_units(scales, geodesic);
+  Knots& knots = extremal.knots;
+  for (int i = 0; i <= knots.segments; ++i) {
+    for (int j = 0; j < knots.dof; ++j) {
+      knots.at(i)[j] *= scales.q[j];
+      knots.at(i)[knots.dof + j] *= scales.momentum(j);
+    }
+  }
+  // What was asked for is answered to the last digit.
+  for (int j = 0; j < problem.dynamics.dof; ++j) {
+    if (!problem.is_free_to(j)) geodesic.to[j] = problem.to[j];
+    if (problem.is_free_from(j)) continue;
+    geodesic.from[j] = problem.from[j];
+    knots.at(0)[j] = problem.from[j];
+    if (!geodesic.trajectory.q.empty()) geodesic.trajectory.q.front()[j] = problem.from[j];
+  }
+  measure_errors(problem, extremal);
+}
+
 // What the searches for all images of the target gave.
 struct Found {
-  std::vector<BoundaryValueProblem> problems;  // one for each image
+  std::vector<BoundaryValueProblem> problems;  // one for each image, in natural scales
   std::vector<Extremal> list;
   std::vector<int> hits;
   int starts = 0;
@@ -113,7 +156,7 @@ struct Found {
   Failure failure;      // why there is none, of the first image
 };
 
-void search_image(const GeodesicOptions& options, Found& found) {
+void search_image(const NaturalScales& scales, const GeodesicOptions& options, Found& found) {
   const BoundaryValueProblem& problem = found.problems.back();
   const int image = static_cast<int>(found.problems.size()) - 1;
   if (stays(problem)) {
@@ -139,7 +182,7 @@ void search_image(const GeodesicOptions& options, Found& found) {
   found.blocked += search.blocked();
   found.timed_out = search.timed_out();
   if (found.list.empty() && found.failure.reason == Reason::kNone) {
-    found.failure = explain_failure(problem, search, options);
+    found.failure = explain_failure(problem, scales, search, options);
   }
 }
 
@@ -148,20 +191,20 @@ GeodesicReport find_without_limits(const BoundaryValueProblem& asked,
   const auto began = std::chrono::steady_clock::now();
   const Deadline deadline(options.time_limit);
   GeodesicReport report;
-  const BoundaryValueProblem problem = at_origin(asked);
+  const BoundaryValueProblem own = at_origin(asked);
+  const NaturalScales scales = natural_scales(own);
+  const BoundaryValueProblem problem = scales.trivial() ? own : rescaled(own, scales);
+  const GeodesicOptions search = in_scales(scales, own, origin_of(asked), options);
   std::vector<Image> images{{problem.to, {}}};
-  if (options.mod_angles) images = images_of_target(problem, options.max_length);
+  if (search.mod_angles) images = images_of_target(problem, search.max_length);
   Found found;
   found.problems.reserve(images.size());  // extremals refer to them
   for (const Image& image : images) {
     found.problems.push_back(problem);
     found.problems.back().to = image.to;
-    GeodesicOptions of_image = options;
+    GeodesicOptions of_image = search;
     of_image.time_limit = deadline.left();
-    for (int j = 0; j < problem.dynamics.dof && !of_image.guess.empty(); ++j) {
-      if (problem.is_free_from(j)) of_image.guess[j] -= origin_of(asked)[j];
-    }
-    search_image(of_image, found);
+    search_image(scales, of_image, found);
     const bool stayed = !found.list.empty() && found.list.back().geodesic.action == 0;
     if (!found.finished || found.timed_out || (stayed && !options.all && options.count == 1)) break;
   }
@@ -171,8 +214,16 @@ GeodesicReport find_without_limits(const BoundaryValueProblem& asked,
     list.resize(options.count);
   }
   parallel_for(static_cast<int>(list.size()), thread_count(options.threads), [&](int i) {
-    list[i].geodesic.windings = images[list[i].image].windings;
+    const Image& image = images[list[i].image];
+    list[i].geodesic.windings = image.windings;
     complete(found.problems[list[i].image], options.samples, list[i]);
+    if (!scales.trivial()) {
+      BoundaryValueProblem of_image = own;
+      for (std::size_t j = 0; j < image.windings.size(); ++j) {
+        of_image.to[j] += image.windings[j] * own.dynamics.info.configuration[j].period;
+      }
+      finish(of_image, scales, list[i]);
+    }
     move_to(origin_of(asked), list[i].geodesic);
   });
   for (Extremal& extremal : list) report.geodesics.push_back(std::move(extremal.geodesic));
@@ -255,6 +306,8 @@ GeodesicReport find_with_limits(const BoundaryValueProblem& asked, const Geodesi
   report.missed_estimate.reset();  // it counts extremals without limits
   report.reason = Reason::kNone;
   problem.limits = asked.limits;
+  GeodesicOptions rest = options;
+  rest.tolerance = rest.absolute_tolerance.value_or(rest.tolerance);
   bool finished = true;
   bool timed_out = deadline.left() == 0;
   for (const Image& image : images) {
@@ -263,7 +316,6 @@ GeodesicReport find_with_limits(const BoundaryValueProblem& asked, const Geodesi
     for (const Geodesic& geodesic : known) {
       if (geodesic.windings == image.windings) of_image.push_back(geodesic);
     }
-    GeodesicOptions rest = options;
     rest.time_limit = deadline.left();
     LimitedAnswer answer = search_with_limits(problem, rest, of_image);
     finished = answer.finished;
@@ -311,8 +363,10 @@ void GeodesicOptions::validate(const BoundaryValueProblem& problem) const {
   require(starts >= 0, "starts is " + std::to_string(starts) + ", must be >= 0");
   require(threads >= 0, "threads is " + std::to_string(threads) + ", must be >= 0");
   require(samples >= 0, "samples is " + std::to_string(samples) + ", must be >= 0");
-  require(tolerance > 0 && std::isfinite(tolerance),
-          "tolerance is " + std::to_string(tolerance) + ", must be > 0");
+  for (const double given : {tolerance, absolute_tolerance.value_or(tolerance)}) {
+    require(given > 0 && std::isfinite(given),
+            "tolerance is " + std::to_string(given) + ", must be > 0");
+  }
   require(time_limit > 0, "time_limit is " + std::to_string(time_limit) + ", must be > 0");
   require(max_length > 0, "max_length is " + std::to_string(max_length) + ", must be > 0");
   const std::vector<std::string> known = minimisers();

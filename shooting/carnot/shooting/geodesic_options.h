@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,12 @@ struct GeodesicOptions {
   int count = 1;     // how many extremals are wanted
   bool all = false;  // every one found, instead of `count`
   double max_length = std::numeric_limits<double>::infinity();
-  int starts = 0;                    // paths to relax; 0: the default for what is asked
-  double tolerance = 1e-10;          // largest endpoint error of a verified extremal
+  int starts = 0;  // paths to relax; 0: the default for what is asked
+  // The largest endpoint error of a verified extremal, in the problem's own scales: those of a
+  // wheelbase and of a turn, not of the unit that lengths happen to be in.
+  double tolerance = 1e-10;
+  // The same in the units of the coordinates; takes the place of `tolerance` where it is given.
+  std::optional<double> absolute_tolerance;
   std::string minimiser = "newton";  // newton, ceres, nlopt, nlopt:NAME (see minimisers())
   bool mod_angles = false;           // angles need to agree modulo their periods only
   // p0 to start from instead of paths, with q_j(0) for free coordinates; empty: none.

@@ -185,6 +185,20 @@ Outcome verify(const BoundaryValueProblem& problem, Knots knots, long steps, dou
   return {std::move(extremal), Reason::kNone};
 }
 
+void measure_errors(const BoundaryValueProblem& problem, Extremal& extremal) {
+  const Knots& knots = extremal.knots;
+  Geodesic& geodesic = extremal.geodesic;
+  if (geodesic.verification == Verification::kKnots) {
+    geodesic.knot_defect = knot_defect(problem, knots, geodesic.plan.count);
+    geodesic.transversality_error = transversality_error(problem, knots.at(knots.segments));
+    return;
+  }
+  std::vector<double> z(knots.at(0), knots.at(0) + 2 * knots.dof);
+  if (!problem.dynamics.flow(geodesic.plan, z).completed()) return;
+  geodesic.endpoint_error = endpoint_error(problem, z.data());
+  geodesic.transversality_error = transversality_error(problem, z.data());
+}
+
 bool same(const Extremal& a, const Extremal& b) {
   constexpr double kSame = 1e-6;
   constexpr double kHardly = 1e-4;  // of the largest extent

@@ -38,6 +38,10 @@ struct Outcome {
 // `steps` is where the search for a step begins.
 Outcome verify(const BoundaryValueProblem& problem, Knots knots, long steps, double tolerance);
 
+// Sets endpoint_error and transversality_error or, for kKnots, the knot_defect, by flows of
+// `problem` from the knots.
+void measure_errors(const BoundaryValueProblem& problem, Extremal& extremal);
+
 // Whether both are the same trajectory: nowhere further apart than 1e-6 of its extent.
 bool same(const Extremal& a, const Extremal& b);
 

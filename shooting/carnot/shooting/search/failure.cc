@@ -24,13 +24,21 @@ std::string regularity(const BoundaryValueProblem& problem) {
   return at.status == RateStatus::kOk ? "" : "; at the target: " + std::string(describe(at.status));
 }
 
+std::string text_of(double x) {
+  std::ostringstream text;
+  text << x;
+  return text.str();
+}
+
 // What the flow from the unknowns x of the start says.
 struct EndPoint {
   std::string text;
   bool beyond_double = false;  // dq(T)/dp0 is so ill-conditioned that p0 has no digit
 };
 
-EndPoint end_point(const BoundaryValueProblem& problem, const std::vector<double>& x) {
+EndPoint end_point(const BoundaryValueProblem& problem,
+                   const NaturalScales& scales,
+                   const std::vector<double>& x) {
   std::ostringstream text;
   text.precision(2);
   const int n = problem.dynamics.dof;
@@ -40,16 +48,21 @@ EndPoint end_point(const BoundaryValueProblem& problem, const std::vector<double
   const Eigen::VectorXd values = singular_values(tangent->topRows(n));
   const auto rank = n - static_cast<int>(kernel_of(Units(problem, x), *tangent).cols());
   const double condition = values[0] / values[n - 1];
-  text << "the flow from its momentum ends " << endpoint_error(problem, z.data())
-       << " away, where dq(T)/dp(0) has rank " << rank << " of " << n << " and condition "
-       << condition;
+  double away = 0;
+  for (int j = 0; j < n; ++j) {
+    if (!problem.is_free_to(j)) {
+      away = std::max(away, scales.q[j] * std::abs(z[j] - problem.to[j]));
+    }
+  }
+  text << "the flow from its momentum ends " << away << " away, where dq(T)/dp(0) has rank " << rank
+       << " of " << n << " and condition " << condition;
   const ConjugateTimes conjugate =
       conjugate_times(problem, knots_of(problem, x, 1, kSteps), kSteps / 4);
   if (conjugate.known) {
     if (conjugate.times.empty())
       text << ", before any conjugate time";
     else
-      text << ", past a conjugate time at " << conjugate.times.front();
+      text << ", past a conjugate time at " << scales.time * conjugate.times.front();
   }
   return {text.str(), !(condition * kEpsilon < 1)};
 }
@@ -128,6 +141,7 @@ std::string blocked_starts(int blocked, int starts) {
 }
 
 Failure explain_failure(const BoundaryValueProblem& problem,
+                        const NaturalScales& scales,
                         const Search& search,
                         const GeodesicOptions& options) {
   const std::string tried = effort(problem, search);
@@ -135,12 +149,13 @@ Failure explain_failure(const BoundaryValueProblem& problem,
   const double shortest = shortest_length(search);
   if (std::isfinite(shortest)) {
     return {Reason::kTooLong,
-            "the shortest extremal found has the length " + std::to_string(shortest) +
+            "the shortest extremal found has the length " + text_of(shortest * scales.length()) +
                 ": try a larger --max-length"};
   }
   if (!options.guess.empty()) {
     return {joined ? search.furthest() : Reason::kGuessFailed,
-            "the guess did not lead to an extremal (" + end_point(problem, options.guess).text +
+            "the guess did not lead to an extremal (" +
+                end_point(problem, scales, options.guess).text +
                 "): leave --guess out to search from paths"};
   }
   if (problem.dynamics.forced > 0) {
@@ -151,7 +166,7 @@ Failure explain_failure(const BoundaryValueProblem& problem,
   const Path* nearest = search.nearest_discrete();
   if (nearest == nullptr) return no_discrete(problem, search);
   const Knots knots = knots_of(*nearest, 1);
-  const EndPoint end = end_point(problem, start_unknowns(problem, knots.at(0)));
+  const EndPoint end = end_point(problem, scales, start_unknowns(problem, knots.at(0)));
   const bool beyond = !joined && end.beyond_double;
   const Reason reason = beyond ? Reason::kBeyondDouble : search.furthest();
   return {reason,

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "carnot/shooting/geodesic_options.h"
+#include "carnot/shooting/problem/natural_scales.h"
 #include "carnot/shooting/reason.h"
 #include "carnot/shooting/search/search.h"
 
@@ -16,8 +17,10 @@ struct Failure {
 
 // The message says where the search came nearest. It gives the residual of the best path and, at
 // its momentum, rank and condition of dq(T)/dp0, how far its end is from the target, the first
-// conjugate time, and whether the saddle system is regular at the target.
+// conjugate time, and whether the saddle system is regular at the target. Lengths and times are put
+// in the units that the scales are of.
 Failure explain_failure(const BoundaryValueProblem& problem,
+                        const NaturalScales& scales,
                         const Search& search,
                         const GeodesicOptions& options);
 

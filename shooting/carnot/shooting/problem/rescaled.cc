@@ -1,0 +1,469 @@
+#include "carnot/shooting/problem/rescaled.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "carnot/system/system_functions.h"
+#include "carnot/transcription/transcription_functions.h"
+
+namespace carnot::internal {
+namespace {
+
+constexpr int kLanes = kErasedLanes;
+
+// What the calls of a rescaled scene take: the scene, and the unit of each number.
+struct Rescaled {
+  Dynamics own;
+  std::vector<double> z;       // of phase points, 2n
+  std::vector<double> rows;    // of the transcription's constraints
+  std::vector<double> lambda;  // of multipliers
+  double time;
+  double action;
+  SystemFunctions functions;
+  TranscriptionFunctions transcription;
+
+  Rescaled(const Dynamics& dynamics, const NaturalScales& scales);
+
+  static const Rescaled& from(const void* opaque) { return *static_cast<const Rescaled*>(opaque); }
+  [[nodiscard]] int dof() const { return own.dof; }
+  [[nodiscard]] const void* system() const { return own.system.get(); }
+  // With these the multipliers' term of l, in units of an energy, has the weight one.
+  [[nodiscard]] GaugeUnits gauge() const { return {z.data(), 1 / (action * time)}; }
+  [[nodiscard]] double energy() const { return action / time; }
+  [[nodiscard]] double length() const { return std::sqrt(action * time); }
+
+  // `count` numbers in units of the scene; and back. Both may be the same place.
+  static void scale(const double* from, const std::vector<double>& units, int count, double* to) {
+    for (int i = 0; i < count; ++i) to[i] = from[i] * units[i];
+  }
+  static void unscale(const double* from, const std::vector<double>& units, int count, double* to) {
+    for (int i = 0; i < count; ++i) to[i] = from[i] / units[i];
+  }
+  // Rows of kLanes numbers.
+  void scale_rows(const double* from, int count, double* to) const {
+    for (int i = 0; i < count * kLanes; ++i) to[i] = from[i] * z[i / kLanes];
+  }
+  [[nodiscard]] StepPlan in_own_time(StepPlan plan) const {
+    for (double* t : {&plan.start, &plan.end, &plan.step, &plan.last}) *t *= time;
+    return plan;
+  }
+};
+
+// Memory for the arguments of one call; the calls do not call each other.
+double* scratch(int count) {
+  thread_local std::vector<double> memory;
+  if (memory.size() < static_cast<std::size_t>(count)) memory.resize(count);
+  return memory.data();
+}
+
+// --- the system ----------------------------------------------------------------------------------
+
+RateStatus rate(const void* opaque, double t, const double* z, double* y, double* z_dot) {
+  const Rescaled& r = Rescaled::from(opaque);
+  const int size = 2 * r.dof();
+  double* const at = scratch(size);
+  Rescaled::scale(z, r.z, size, at);
+  const RateStatus status = r.own.functions->rate(r.system(), r.time * t, at, y, z_dot);
+  if (status != RateStatus::kOk) return status;
+  for (int i = 0; i < size; ++i) z_dot[i] *= r.time / r.z[i];
+  return status;
+}
+
+RateStatus jacobian(const void* opaque, double t, const double* z, const double* y, double* out) {
+  const Rescaled& r = Rescaled::from(opaque);
+  const int size = 2 * r.dof();
+  double* const at = scratch(size);
+  Rescaled::scale(z, r.z, size, at);
+  const RateStatus status = r.own.functions->jacobian(r.system(), r.time * t, at, y, out);
+  for (int column = 0; column < size; ++column) {
+    for (int row = 0; row < size; ++row) {
+      out[column * size + row] *= r.time * r.z[column] / r.z[row];
+    }
+  }
+  return status;
+}
+
+// Times of kLanes points and their phase points, in units of the scene.
+struct Points {
+  double* t;
+  double* z;
+  double* rest;  // more rows
+};
+Points points_of(const Rescaled& r, const double* t, const double* z, int more_rows) {
+  const int size = 2 * r.dof();
+  double* const memory = scratch((1 + size + more_rows) * kLanes);
+  const Points points{memory, memory + kLanes, memory + (1 + size) * kLanes};
+  for (int l = 0; l < kLanes; ++l) points.t[l] = r.time * t[l];
+  r.scale_rows(z, size, points.z);
+  return points;
+}
+
+bool rates(const void* opaque, const double* t, const double* z, double* y, double* z_dot) {
+  const Rescaled& r = Rescaled::from(opaque);
+  const Points at = points_of(r, t, z, 0);
+  if (!r.own.functions->rates(r.system(), at.t, at.z, y, z_dot)) return false;
+  for (int i = 0; i < 2 * r.dof() * kLanes; ++i) z_dot[i] *= r.time / r.z[i / kLanes];
+  return true;
+}
+
+bool jacobians(
+    const void* opaque, const double* t, const double* z, const double* weights, double* jacobian) {
+  const Rescaled& r = Rescaled::from(opaque);
+  const int size = 2 * r.dof();
+  const Points at = points_of(r, t, z, 0);
+  if (!r.own.functions->jacobians(r.system(), at.t, at.z, weights, jacobian)) return false;
+  for (int entry = 0; entry < size * size; ++entry) {
+    const double unit = r.time * r.z[entry % size] / r.z[entry / size];
+    for (int l = 0; l < kLanes; ++l) jacobian[entry * kLanes + l] *= unit;
+  }
+  return true;
+}
+
+double hamiltonian(
+    const void* opaque, double t, const double* q, const double* p, const double* y) {
+  const Rescaled& r = Rescaled::from(opaque);
+  const int n = r.dof();
+  double* const at = scratch(2 * n);
+  for (int j = 0; j < n; ++j) at[j] = q[j] * r.z[j];
+  for (int j = 0; j < n; ++j) at[n + j] = p[j] * r.z[n + j];
+  return r.own.functions->hamiltonian(r.system(), r.time * t, at, at + n, y) / r.energy();
+}
+
+RateStatus find_multipliers(const void* opaque,
+                            double t,
+                            const double* q,
+                            const double* p,
+                            const double* y,
+                            double* lambda) {
+  const Rescaled& r = Rescaled::from(opaque);
+  const int n = r.dof();
+  double* const at = scratch(2 * n);
+  for (int j = 0; j < n; ++j) at[j] = q[j] * r.z[j];
+  for (int j = 0; j < n; ++j) at[n + j] = p[j] * r.z[n + j];
+  const RateStatus status =
+      r.own.functions->find_multipliers(r.system(), r.time * t, at, at + n, y, lambda);
+  Rescaled::unscale(lambda, r.lambda, r.own.multipliers, lambda);
+  return status;
+}
+
+void measure(const void* opaque,
+             int count,
+             const double* t,
+             const double* weights,
+             const double* z,
+             const double* dq,
+             const double* y,
+             PointMeasures* out) {
+  const Rescaled& r = Rescaled::from(opaque);
+  const int n = r.dof();
+  const Points at = points_of(r, t, z, n + 1);
+  double* const steps = at.rest + n * kLanes;
+  r.scale_rows(dq, n, at.rest);
+  for (int l = 0; l < kLanes; ++l) steps[l] = r.time * weights[l];
+  r.own.functions->measure(r.system(), count, at.t, steps, at.z, at.rest, y, out);
+  for (int l = 0; l < count; ++l) {
+    out[l].lagrangian /= r.energy();
+    out[l].speed *= r.time / r.length();
+    out[l].power *= r.time / r.energy();
+  }
+}
+
+NodeMeasures measure_node(const void* opaque, double t, const double* z, double* y) {
+  const Rescaled& r = Rescaled::from(opaque);
+  const int size = 2 * r.dof();
+  double* const at = scratch(size);
+  Rescaled::scale(z, r.z, size, at);
+  NodeMeasures measures = r.own.functions->measure_node(r.system(), r.time * t, at, y);
+  measures.hamiltonian /= r.energy();
+  return measures;
+}
+
+void branch(const void* opaque, double* y) {
+  const Rescaled& r = Rescaled::from(opaque);
+  r.own.functions->branch(r.system(), y);
+}
+
+// --- the transcription ---------------------------------------------------------------------------
+
+// The units of velocities in the entries: with a gauge those of the coordinates, see
+// transcription_functions.h.
+double velocity_unit(const Rescaled& r, int j) { return r.transcription.gauge ? 1 : r.z[j]; }
+
+void entries(
+    const void* opaque, const double* q, const GaugeUnits& /*units*/, bool slopes, double* out) {
+  const Rescaled& r = Rescaled::from(opaque);
+  const int n = r.dof();
+  double* const at = scratch(n);
+  Rescaled::scale(q, r.z, n, at);
+  r.own.transcription->entries(r.system(), at, r.gauge(), slopes, out);
+  const int length = slopes ? row_length(n) : 1;
+  double* row = out;
+  const auto convert = [&](double unit) {
+    row[0] *= unit;
+    for (int d = 0; slopes && d < n; ++d) row[1 + d] *= unit * r.z[d];
+    row += length;
+  };
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      convert(velocity_unit(r, i) * velocity_unit(r, j) / (r.action * r.time));
+    }
+  }
+  for (int i = 0; i < r.own.transcribed; ++i) {
+    for (int j = 0; j < n; ++j) convert(velocity_unit(r, j) / r.rows[i]);
+  }
+  convert(1 / r.energy());
+}
+
+void hessian(const void* opaque,
+             const double* q,
+             const double* v,
+             const double* lambda,
+             const GaugeUnits& /*units*/,
+             double* l_qq) {
+  const Rescaled& r = Rescaled::from(opaque);
+  const int n = r.dof();
+  const int k = r.own.transcribed;
+  double* const at = scratch(2 * n + k);
+  double* const velocity = at + n;
+  double* const multipliers = velocity + n;
+  for (int j = 0; j < n; ++j) at[j] = q[j] * r.z[j];
+  for (int j = 0; j < n; ++j) velocity[j] = v[j] * velocity_unit(r, j) / r.time;
+  for (int i = 0; i < k; ++i) multipliers[i] = lambda[i] * r.action / r.rows[i];
+  r.own.transcription->hessian(r.system(), at, velocity, multipliers, r.gauge(), l_qq);
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) l_qq[i * n + j] *= r.z[i] * r.z[j] / r.energy();
+  }
+}
+
+// --- flows ---------------------------------------------------------------------------------------
+
+void convert(const Rescaled& r, FlowReport& report) { report.time_reached /= r.time; }
+
+FlowReport flow(const void* opaque, const void*, const StepPlan& plan, double* z) {
+  const Rescaled& r = Rescaled::from(opaque);
+  const int size = 2 * r.dof();
+  Rescaled::scale(z, r.z, size, z);
+  FlowReport report = r.own.flow(r.in_own_time(plan), {z, static_cast<std::size_t>(size)});
+  Rescaled::unscale(z, r.z, size, z);
+  convert(r, report);
+  return report;
+}
+
+FlowReport tangent_flow(
+    const void* opaque, const void*, const StepPlan& plan, double* z, double* m) {
+  const Rescaled& r = Rescaled::from(opaque);
+  const std::size_t size = 2 * r.dof();
+  Rescaled::scale(z, r.z, 2 * r.dof(), z);
+  FlowReport report = r.own.tangent_flow(r.in_own_time(plan), {z, size}, {m, size * size});
+  Rescaled::unscale(z, r.z, 2 * r.dof(), z);
+  for (std::size_t row = 0; row < size; ++row) {
+    for (std::size_t column = 0; column < size; ++column) {
+      m[row * size + column] *= r.z[column] / r.z[row];
+    }
+  }
+  convert(r, report);
+  return report;
+}
+
+FlowSummary monitored_flow(const void* opaque,
+                           const void*,
+                           const StepPlan& plan,
+                           double* z,
+                           const MonitorOptions& options) {
+  const Rescaled& r = Rescaled::from(opaque);
+  const int n = r.dof();
+  MonitorOptions own = options;
+  for (double& t : own.times) t *= r.time;
+  Rescaled::scale(z, r.z, 2 * n, z);
+  FlowSummary summary =
+      r.own.monitored_flow(r.in_own_time(plan), {z, static_cast<std::size_t>(2 * n)}, own);
+  Rescaled::unscale(z, r.z, 2 * n, z);
+  convert(r, summary.report);
+  summary.action /= r.action;
+  summary.length /= r.length();
+  summary.energy_drift /= r.energy();
+  summary.energy_balance /= r.energy();
+  Trajectory& samples = summary.trajectory;
+  for (double& t : samples.t) t /= r.time;
+  for (double& energy : samples.hamiltonian) energy /= r.energy();
+  for (auto& q : samples.q) Rescaled::unscale(q.data(), r.z, n, q.data());
+  for (auto& p : samples.p) {
+    for (int j = 0; j < n; ++j) p[j] /= r.z[n + j];
+  }
+  for (auto& lambda : samples.lambda) {
+    Rescaled::unscale(lambda.data(), r.lambda, static_cast<int>(lambda.size()), lambda.data());
+  }
+  return summary;
+}
+
+// --- the rest ------------------------------------------------------------------------------------
+
+// (q, p) in units of the scene.
+std::vector<double> phase_point(const Rescaled& r, const double* q, const double* p) {
+  const int n = r.dof();
+  std::vector<double> z(2 * n);
+  for (int j = 0; j < n; ++j) z[j] = q[j] * r.z[j];
+  for (int j = 0; j < n; ++j) z[n + j] = p[j] * r.z[n + j];
+  return z;
+}
+
+Regularity regularity(const void* opaque, double t, const double* q, const double* p) {
+  const Rescaled& r = Rescaled::from(opaque);
+  const std::vector<double> z = phase_point(r, q, p);
+  return r.own.calls.regularity(r.system(), r.time * t, z.data(), z.data() + r.dof());
+}
+
+double chart(const void* opaque, const double* q) {
+  const Rescaled& r = Rescaled::from(opaque);
+  std::vector<double> at(r.dof());
+  Rescaled::scale(q, r.z, r.dof(), at.data());
+  return r.own.calls.chart(r.system(), at.data());
+}
+
+double momentum(
+    const void* opaque, double t, const double* q, double* q_dot, const double* lambda, double* p) {
+  const Rescaled& r = Rescaled::from(opaque);
+  const int n = r.dof();
+  std::vector<double> at(n);
+  std::vector<double> multipliers(r.own.multipliers);
+  Rescaled::scale(q, r.z, n, at.data());
+  Rescaled::scale(lambda, r.lambda, r.own.multipliers, multipliers.data());
+  for (int j = 0; j < n; ++j) q_dot[j] *= r.z[j] / r.time;
+  const double violated =
+      r.own.calls.momentum(r.system(), r.time * t, at.data(), q_dot, multipliers.data(), p);
+  for (int j = 0; j < n; ++j) q_dot[j] *= r.time / r.z[j];
+  for (int j = 0; j < n; ++j) p[j] /= r.z[n + j];
+  return violated;
+}
+
+// With holonomic constraints all coordinates have the unit one, so that what is normal stays it.
+HolonomicResiduals holonomic_residuals(const void* opaque, double t, const double* z) {
+  const Rescaled& r = Rescaled::from(opaque);
+  const std::vector<double> at = phase_point(r, z, z + r.dof());
+  return r.own.calls.holonomic_residuals(r.system(), r.time * t, at.data());
+}
+
+bool project_on_manifold(const void* opaque, double t, double* z) {
+  const Rescaled& r = Rescaled::from(opaque);
+  Rescaled::scale(z, r.z, 2 * r.dof(), z);
+  const bool projected = r.own.calls.project_on_manifold(r.system(), r.time * t, z);
+  Rescaled::unscale(z, r.z, 2 * r.dof(), z);
+  return projected;
+}
+
+bool tangent_projector(const void* opaque, double t, const double* z, double* projector) {
+  const Rescaled& r = Rescaled::from(opaque);
+  const int size = 2 * r.dof();
+  const std::vector<double> at = phase_point(r, z, z + r.dof());
+  if (!r.own.calls.tangent_projector(r.system(), r.time * t, at.data(), projector)) return false;
+  for (int row = 0; row < size; ++row) {
+    for (int column = 0; column < size; ++column) {
+      projector[row * size + column] *= r.z[column] / r.z[row];
+    }
+  }
+  return true;
+}
+
+Rescaled::Rescaled(const Dynamics& dynamics, const NaturalScales& scales)
+    : own(dynamics),
+      z(scales.q),
+      rows(scales.rows),
+      lambda(scales.multipliers),
+      time(scales.time),
+      action(scales.action),
+      functions(*dynamics.functions) {
+  for (int j = 0; j < dof(); ++j) z.push_back(scales.momentum(j));
+  functions.rate = internal::rate;
+  functions.jacobian = internal::jacobian;
+  functions.rates = internal::rates;
+  functions.jacobians = internal::jacobians;
+  functions.iterate = nullptr;
+  functions.hamiltonian = internal::hamiltonian;
+  functions.find_multipliers = internal::find_multipliers;
+  functions.measure = internal::measure;
+  functions.measure_node = internal::measure_node;
+  functions.branch = internal::branch;
+  if (!own.has_transcription()) return;
+  transcription = *own.transcription;
+  transcription.entries = internal::entries;
+  transcription.hessian = internal::hessian;
+}
+
+}  // namespace
+
+Dynamics rescaled(const Dynamics& dynamics, const NaturalScales& scales) {
+  const auto system = std::make_shared<Rescaled>(dynamics, scales);
+  Dynamics result = dynamics;
+  result.system = system;
+  result.functions = &system->functions;
+  if (dynamics.has_transcription()) result.transcription = &system->transcription;
+  result.kernel.calls = {flow, tangent_flow, monitored_flow, nullptr};
+  const auto replace = [](auto& call, auto* with) {
+    if (call != nullptr) call = with;
+  };
+  replace(result.calls.regularity, regularity);
+  replace(result.calls.chart, chart);
+  replace(result.calls.momentum, momentum);
+  result.calls.branch = nullptr;
+  replace(result.calls.holonomic_residuals, holonomic_residuals);
+  replace(result.calls.project_on_manifold, project_on_manifold);
+  replace(result.calls.tangent_projector, tangent_projector);
+  for (Extreme& extreme : result.info.extremes) {
+    extreme.value = [system, value = std::move(extreme.value)](const double* q) {
+      std::vector<double> at(system->dof());
+      Rescaled::scale(q, system->z, system->dof(), at.data());
+      return value(at.data());
+    };
+  }
+  result.info.limits.clear();
+  return result;
+}
+
+BoundaryValueProblem rescaled(const BoundaryValueProblem& problem, const NaturalScales& scales) {
+  BoundaryValueProblem result = problem;
+  result.dynamics = rescaled(problem.dynamics, scales);
+  for (std::size_t j = 0; j < scales.q.size(); ++j) {
+    result.from[j] /= scales.q[j];
+    result.to[j] /= scales.q[j];
+  }
+  result.time /= scales.time;
+  return result;
+}
+
+void put_in_own_units(const NaturalScales& scales, Geodesic& geodesic) {
+  const int n = static_cast<int>(scales.q.size());
+  const auto put_q = [&](std::vector<double>& q) {
+    for (int j = 0; j < n; ++j) q[j] *= scales.q[j];
+  };
+  const auto put_p = [&](std::vector<double>& p) {
+    for (int j = 0; j < n; ++j) p[j] *= scales.momentum(j);
+  };
+  const auto put_lambda = [&](std::vector<double>& lambda) {
+    for (std::size_t i = 0; i < lambda.size(); ++i) lambda[i] *= scales.multipliers[i];
+  };
+  put_q(geodesic.from);
+  put_q(geodesic.to);
+  put_p(geodesic.p0);
+  put_lambda(geodesic.lambda0);
+  geodesic.action *= scales.action;
+  if (geodesic.length) *geodesic.length *= scales.length();
+  geodesic.energy_drift *= scales.energy();
+  if (geodesic.conjugate_times) {
+    for (double& t : *geodesic.conjugate_times) t *= scales.time;
+  }
+  for (double* t :
+       {&geodesic.plan.start, &geodesic.plan.end, &geodesic.plan.step, &geodesic.plan.last}) {
+    *t *= scales.time;
+  }
+  Trajectory& samples = geodesic.trajectory;
+  for (double& t : samples.t) t *= scales.time;
+  for (double& energy : samples.hamiltonian) energy *= scales.energy();
+  for (auto& q : samples.q) put_q(q);
+  for (auto& p : samples.p) put_p(p);
+  for (auto& lambda : samples.lambda) put_lambda(lambda);
+}
+
+}  // namespace carnot::internal
