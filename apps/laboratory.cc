@@ -9,14 +9,15 @@ int main(int argc, char** argv) {
   using namespace carnot::apps;
   guard_streams();
   watch_for_interrupts();
-  constexpr std::array<AddSubcommand, 9> kSubcommands = {add_geodesic,
-                                                         add_continue,
-                                                         add_flow,
-                                                         add_scenes,
-                                                         add_methods,
-                                                         add_verify,
-                                                         add_paper,
-                                                         add_benchmark,
-                                                         add_stress};
+  constexpr std::array<AddSubcommand, 10> kSubcommands = {add_geodesic,
+                                                          add_atlas,
+                                                          add_continue,
+                                                          add_flow,
+                                                          add_scenes,
+                                                          add_methods,
+                                                          add_verify,
+                                                          add_paper,
+                                                          add_benchmark,
+                                                          add_stress};
   return run_program({argv + std::min(argc, 1), argv + argc}, kSubcommands);
 }

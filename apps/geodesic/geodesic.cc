@@ -1,22 +1,15 @@
 // carnot geodesic: extremals that join two configurations, without a guess.
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <memory>
 
-#include "carnot/language/nearest.h"
-#include "catalogue/limit_choice.h"
 #include "catalogue/scene_choice.h"
 #include "geodesic/geodesic_result.h"
+#include "run/search_options.h"
 #include "run/subcommands.h"
 #include "text/numbers.h"
 #include "text/progress_bar.h"
 
 namespace carnot::apps {
 namespace {
-
-constexpr long kMostGeodesics = 10000;
-constexpr long kMostStarts = 10000000;
 
 constexpr const char* kGeodesicFooter = R"(
 No guess is needed. Distinct extremals are listed, least action first; mirror partners count
@@ -53,72 +46,20 @@ struct GeodesicCall {
   std::string from;
   std::string to;
   std::string time = "1";
-  std::string count;
-  bool all = false;
-  std::string max_length;
-  std::string starts;
-  std::string tolerance;
-  std::string minimiser = "newton";
   std::string guess;
-  std::string time_limit;
-  bool mod_angles = false;
-  std::vector<std::string> limits;
-  std::vector<std::string> discs;
+  SearchOptions search;
 };
-
-std::string check_minimiser(const std::string& name) {
-  const std::vector<std::string> known = minimisers();
-  if (std::find(known.begin(), known.end(), name) == known.end()) {
-    refuse("--minimiser",
-           name,
-           "no such minimiser" + language::suggestion(name, known),
-           fmt::format("{}", fmt::join(known, ", ")));
-  }
-  return name;
-}
-
-GeodesicOptions check_search(const GeodesicCall& options, const Run& run) {
-  GeodesicOptions search;
-  if (options.all && !options.count.empty()) {
-    refuse("--count", options.count, "given besides --all", "one of the two");
-  }
-  search.all = options.all;
-  if (!options.count.empty()) {
-    search.count = static_cast<int>(parse_integer("--count", options.count, 1, kMostGeodesics));
-  }
-  if (!options.max_length.empty()) {
-    search.max_length = parse_positive("--max-length", options.max_length);
-  }
-  if (!options.starts.empty()) {
-    search.starts = static_cast<int>(parse_integer("--starts", options.starts, 1, kMostStarts));
-  }
-  if (!options.tolerance.empty()) {
-    search.absolute_tolerance = parse_tolerance("--tolerance", options.tolerance);
-  }
-  search.minimiser = check_minimiser(options.minimiser);
-  if (!options.guess.empty()) {
-    search.guess = parse_vector("--guess", options.guess, coordinate_names(*run.entry));
-  }
-  search.mod_angles = options.mod_angles;
-  if (!options.time_limit.empty()) {
-    search.time_limit = parse_positive("--time-limit", options.time_limit);
-  }
-  search.seed = run.seed;
-  search.threads = run.threads;
-  search.samples = run.samples;
-  return search;
-}
 
 GeodesicRequest check(const GeodesicCall& options) {
   GeodesicRequest request;
   request.run = check(options.run);
   request.ends = parse_ends(options.from, options.to, options.time, request.run);
-  request.ends.limits = request.run.dynamics.info.limits;
-  if (!options.limits.empty() || !options.discs.empty()) {
-    request.ends.limits =
-        choose_limits(options.run.scene, request.run.parameters, options.limits, options.discs);
+  request.ends.limits = limits_of(options.search, options.run, request.run);
+  request.options = check(options.search, request.run);
+  if (!options.guess.empty()) {
+    request.options.guess =
+        parse_vector("--guess", options.guess, coordinate_names(*request.run.entry));
   }
-  request.options = check_search(options, request.run);
   return request;
 }
 
@@ -129,34 +70,14 @@ GeodesicReport search(const GeodesicRequest& request) {
   return find_geodesics(problem_between(request.run.dynamics, request.ends), options);
 }
 
-void add_search_options(CLI::App& app, GeodesicCall& options) {
+void add_ends(CLI::App& app, GeodesicCall& options) {
   const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
     app.add_option(name, value, help)->type_name(type);
   };
   add("--from", options.from, "Q0", "configuration at the start, e.g. -3,4,-pi/2,0; * is free");
   add("--to", options.to, "Q1", "configuration at the end; * for a coordinate that is free");
   add("--time", options.time, "T", "how long it takes, > 0 (1)");
-  add("--count", options.count, "K", "up to K extremals (1)");
-  app.add_flag("--all", options.all, "every extremal that is found, instead of --count");
-  add("--max-length", options.max_length, "A", "leave out longer ones");
-  add("--starts", options.starts, "N", "paths to start from (as many as the task needs)");
-  add("--tolerance",
-      options.tolerance,
-      "TOL",
-      "largest error at the end (1e-10 of the problem's own scales)");
-  add("--minimiser",
-      options.minimiser,
-      "NAME",
-      "newton, ceres, nlopt or nlopt:NAME, NAME one of slsqp, lbfgs, mlsl, isres, crs (newton)");
-  add("--time-limit", options.time_limit, "SECONDS", "end with what was found by then (none)");
-  add("--guess", options.guess, "P0", "momentum to start from instead");
-  app.add_flag("--mod-angles", options.mod_angles, "angles agree modulo their periods");
-  app.add_option("--limit", options.limits, "keep an expression in a range (repeatable)")
-      ->type_name("'EXPR in A:B'")
-      ->allow_extra_args(false);
-  app.add_option("--disc", options.discs, "keep the body's points out of a disc (repeatable)")
-      ->type_name("X,Y,R")
-      ->allow_extra_args(false);
+  add("--guess", options.guess, "P0", "momentum to start from instead of paths");
 }
 
 }  // namespace
@@ -166,7 +87,8 @@ void add_geodesic(CLI::App& app, Invocation& invocation) {
   options->run.searches = true;
   CLI::App& geodesic =
       *app.add_subcommand("geodesic", "Find geodesics between two configurations.");
-  add_search_options(geodesic, *options);
+  add_ends(geodesic, *options);
+  add_search_options(geodesic, options->search);
   add_run_options(geodesic, options->run);
   geodesic.footer(kGeodesicFooter);
   geodesic.callback([options, &invocation] {

@@ -13,53 +13,15 @@
 namespace carnot::apps {
 namespace {
 
-Json limits_json(const Geodesic& geodesic) {
-  Json list = Json::array();
-  for (const LimitReport& limit : geodesic.limits) {
-    Json json;
-    json["name"] = limit.name;
-    json["lowest_slack"] = limit.lowest_slack;
-    json["active"] = Json::array();
-    for (const auto& [begin, end] : limit.active) json["active"].push_back({begin, end});
-    json["largest_multiplier"] = limit.largest_multiplier;
-    list.push_back(std::move(json));
-  }
-  return list;
-}
-
-Json geodesic_json(const Geodesic& geodesic,
-                   const Ends& ends,
-                   std::size_t rank,
-                   bool with_trajectory) {
-  Json json;
-  add_extremal(geodesic, ends, json);
-  json["constraint_error"] = geodesic.constraint_error;
-  json["energy_drift"] = geodesic.energy_drift;
-  json["conjugate_times"] = or_null(geodesic.conjugate_times);
-  json["label"] = name_of(geodesic.label);
-  json["abnormal"] = or_null(geodesic.abnormal);
-  json["morse_index"] = or_null(geodesic.morse_index);
-  json["family_dimension"] = or_null(geodesic.family_dimension);
-  json["rank_in_list"] = rank;
-  json["hits"] = geodesic.hits;
-  if (!geodesic.windings.empty()) json["windings"] = geodesic.windings;
-  for (const auto& [name, value] : geodesic.extremes) json[name] = value;
-  if (!ends.limits.empty()) {
-    json["limits"] = limits_json(geodesic);
-    json["limit_violation"] = geodesic.limit_violation;
-  }
-  if (with_trajectory) json["trajectory"] = trajectory_json(geodesic.trajectory);
-  return json;
-}
-
 Json report_json(const GeodesicRequest& request,
                  const GeodesicReport& report,
                  const std::vector<std::string>& arguments) {
   const Run& run = request.run;
   Json geodesics = Json::array();
   for (const Geodesic& geodesic : report.geodesics) {
-    geodesics.push_back(
-        geodesic_json(geodesic, request.ends, geodesics.size() + 1, !run.no_trajectory));
+    Json one = geodesic_json(geodesic, request.ends, geodesics.size() + 1);
+    if (!run.no_trajectory) one["trajectory"] = trajectory_json(geodesic.trajectory);
+    geodesics.push_back(std::move(one));
   }
   Json json = problem_json(arguments, run, request.ends);
   json["status"] = report.status == GeodesicStatus::kConverged ? "converged" : "not_converged";

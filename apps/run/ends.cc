@@ -31,19 +31,29 @@ std::vector<double> filled(const std::vector<std::optional<double>>& typed,
 
 void check_typed(std::string_view option,
                  const std::string& text,
-                 const Run& run,
+                 const Dynamics& dynamics,
                  const std::vector<double>& end,
                  const std::vector<bool>& free) {
-  if (any(free) && run.dynamics.holonomic > 0) {
+  if (any(free) && dynamics.holonomic > 0) {
     refuse(option,
            text,
            "a coordinate that h(q) = 0 ties to the others cannot be free",
            "a number for each coordinate");
   }
-  check_end(option, text, run.dynamics, end);
+  check_end(option, text, dynamics, end);
 }
 
 }  // namespace
+
+Ends ends_of(const std::vector<std::optional<double>>& from,
+             const std::vector<std::optional<double>>& to) {
+  Ends ends;
+  ends.from = filled(from, to);
+  ends.to = filled(to, from);
+  ends.free_from = free_of(from);
+  ends.free_to = free_of(to);
+  return ends;
+}
 
 Ends parse_ends(const std::string& from,
                 const std::string& to,
@@ -54,13 +64,9 @@ Ends parse_ends(const std::string& from,
   if (to.empty()) refuse_missing("--to", end_accepted(names));
   const auto start = parse_end("--from", from, names);
   const auto target = parse_end("--to", to, names);
-  Ends ends;
-  ends.from = filled(start, target);
-  ends.to = filled(target, start);
-  ends.free_from = free_of(start);
-  ends.free_to = free_of(target);
-  check_typed("--from", from, run, ends.from, ends.free_from);
-  check_typed("--to", to, run, ends.to, ends.free_to);
+  Ends ends = ends_of(start, target);
+  check_typed("--from", from, run.dynamics, ends.from, ends.free_from);
+  check_typed("--to", to, run.dynamics, ends.to, ends.free_to);
   ends.time = parse_positive("--time", time);
   return ends;
 }
@@ -76,8 +82,13 @@ std::vector<double> parse_same_end(std::string_view option,
   }
   std::vector<double> values = end;
   for (std::size_t j = 0; j < end.size(); ++j) values[j] = typed[j].value_or(end[j]);
-  check_typed(option, text, run, values, free);
+  check_typed(option, text, run.dynamics, values, free);
   return values;
+}
+
+void check_ends(const Ends& ends, const Dynamics& dynamics) {
+  check_typed("from", end_text(ends.from, ends.free_from), dynamics, ends.from, ends.free_from);
+  check_typed("to", end_text(ends.to, ends.free_to), dynamics, ends.to, ends.free_to);
 }
 
 bool has_free(const Ends& ends) { return any(ends.free_from) || any(ends.free_to); }

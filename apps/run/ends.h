@@ -27,6 +27,10 @@ Ends parse_ends(const std::string& from,
                 const std::string& time,
                 const Run& run);
 
+// Of two ends as they were read, with nothing where a coordinate is free.
+Ends ends_of(const std::vector<std::optional<double>>& from,
+             const std::vector<std::optional<double>>& to);
+
 // A configuration for `option` with the same free coordinates as an end that is known, whose values
 // it takes there.
 std::vector<double> parse_same_end(std::string_view option,
@@ -34,6 +38,10 @@ std::vector<double> parse_same_end(std::string_view option,
                                    const Run& run,
                                    const std::vector<double>& end,
                                    const std::vector<bool>& free);
+
+// Throws std::invalid_argument where an end is singular, not on the manifold of the scene, or free
+// where the manifold ties it to others.
+void check_ends(const Ends& ends, const Dynamics& dynamics);
 
 bool has_free(const Ends& ends);
 

@@ -3,6 +3,23 @@
 #include "text/text_table.h"
 
 namespace carnot::apps {
+namespace {
+
+Json limits_json(const Geodesic& geodesic) {
+  Json list = Json::array();
+  for (const LimitReport& limit : geodesic.limits) {
+    Json json;
+    json["name"] = limit.name;
+    json["lowest_slack"] = limit.lowest_slack;
+    json["active"] = Json::array();
+    for (const auto& [begin, end] : limit.active) json["active"].push_back({begin, end});
+    json["largest_multiplier"] = limit.largest_multiplier;
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+}  // namespace
 
 const char* name_of(Label label) {
   switch (label) {
@@ -44,6 +61,27 @@ void add_extremal(const Geodesic& geodesic, const Ends& ends, Json& json) {
   json["from_found"] = geodesic.from;
   json["to_found"] = geodesic.to;
   json["transversality_error"] = geodesic.transversality_error;
+}
+
+Json geodesic_json(const Geodesic& geodesic, const Ends& ends, std::size_t rank) {
+  Json json;
+  add_extremal(geodesic, ends, json);
+  json["constraint_error"] = geodesic.constraint_error;
+  json["energy_drift"] = geodesic.energy_drift;
+  json["conjugate_times"] = or_null(geodesic.conjugate_times);
+  json["label"] = name_of(geodesic.label);
+  json["abnormal"] = or_null(geodesic.abnormal);
+  json["morse_index"] = or_null(geodesic.morse_index);
+  json["family_dimension"] = or_null(geodesic.family_dimension);
+  json["rank_in_list"] = rank;
+  json["hits"] = geodesic.hits;
+  if (!geodesic.windings.empty()) json["windings"] = geodesic.windings;
+  for (const auto& [name, value] : geodesic.extremes) json[name] = value;
+  if (!ends.limits.empty()) {
+    json["limits"] = limits_json(geodesic);
+    json["limit_violation"] = geodesic.limit_violation;
+  }
+  return json;
 }
 
 std::vector<std::string> geodesic_cells(const Geodesic& geodesic) {

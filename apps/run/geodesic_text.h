@@ -19,6 +19,9 @@ Json problem_json(const std::vector<std::string>& arguments, const Run& run, con
 // Adds "p0" to "knot_defect" and, where ends are free, what was found there.
 void add_extremal(const Geodesic& geodesic, const Ends& ends, Json& json);
 
+// All of it but the trajectory; `rank` is its place in the list, from 1.
+Json geodesic_json(const Geodesic& geodesic, const Ends& ends, std::size_t rank);
+
 // Its action, length, error and label, for people.
 std::vector<std::string> geodesic_cells(const Geodesic& geodesic);
 

@@ -110,8 +110,10 @@ Run check(const RunOptions& options) {
   run.destination = options.destination;
   run.destination.figure = find_figure(options.destination.figure_name);
   check_destination(run.destination, run.no_trajectory);
-  run.dynamics = as_text ? dynamics_of_text(*run.entry, run.parameters)
-                         : run.entry->make(run.parameters, run.method.name);
+  run.make = [entry = run.entry, method = run.method.name, as_text](const ParameterValues& values) {
+    return as_text ? dynamics_of_text(*entry, values) : entry->make(values, method);
+  };
+  run.dynamics = run.make(run.parameters);
   const bool drawable = run.dynamics.info.drawing.view != Drawing::View::kTimeOnly;
   const plots::Figure figure = run.destination.figure;
   if (!drawable && (figure == plots::Figure::kPath || figure == plots::Figure::kOverview)) {

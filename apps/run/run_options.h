@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,7 @@ struct Run {
   Method method;
   ParameterValues parameters;
   Dynamics dynamics;
+  std::function<Dynamics(const ParameterValues&)> make;  // the same with other parameters
   long samples = 0;
   std::uint64_t seed = 0;
   int threads = 0;  // 0: all cores

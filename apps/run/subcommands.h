@@ -16,6 +16,7 @@ struct Invocation {
 // What each does is in the file of its name. Their callbacks throw std::invalid_argument on bad
 // input, before any work. `invocation` must outlive the parsing.
 void add_geodesic(CLI::App& app, Invocation& invocation);
+void add_atlas(CLI::App& app, Invocation& invocation);
 void add_continue(CLI::App& app, Invocation& invocation);
 void add_flow(CLI::App& app, Invocation& invocation);
 void add_scenes(CLI::App& app, Invocation& invocation);

@@ -64,6 +64,18 @@ std::string json_text(const Json& value) {
   return out + '\n';
 }
 
+std::string json_line(const Json& value) {
+  if (!value.is_structured()) return scalar_text(value);
+  const bool object = value.is_object();
+  std::string out(1, object ? '{' : '[');
+  for (const auto& [key, item] : value.items()) {
+    if (out.size() > 1) out += ", ";
+    if (object) out += scalar_text(Json(key)) + ": ";
+    out += json_line(item);
+  }
+  return out + (object ? '}' : ']');
+}
+
 Json trajectory_json(const Trajectory& trajectory) {
   return {{"t", trajectory.t},
           {"q", trajectory.q},

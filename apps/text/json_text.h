@@ -16,6 +16,9 @@ using Json = nlohmann::ordered_json;
 // The text, with a newline at the end.
 std::string json_text(const Json& value);
 
+// The same on one line, without a newline.
+std::string json_line(const Json& value);
+
 // {"t", "q", "p", "lambda", "hamiltonian"}.
 Json trajectory_json(const Trajectory& trajectory);
 

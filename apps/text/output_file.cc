@@ -9,7 +9,6 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "carnot/plots/interrupts_blocked.h"
 #include "carnot/plots/replace_file.h"
 #include "text/numbers.h"
 
@@ -55,22 +54,29 @@ void check_output_file(std::string_view option,
   check_output_directory(option, path);
 }
 
-void write_file(const std::string& path, std::string_view text) {
-  const plots::InterruptsBlocked blocked;
+NewFile::NewFile(const std::string& path) : path_(path) {
   const fs::path target(plots::followed(path));
-  const fs::path temporary =
+  temporary_ =
       directory_of(target) / fmt::format(".{}.{}.part", target.filename().string(), getpid());
-  std::ofstream file(temporary, std::ios::binary);
+}
+
+NewFile::~NewFile() {
+  std::error_code ignored;
+  if (!finished_) fs::remove(temporary_, ignored);
+}
+
+void NewFile::finish() {
+  plots::replace_file(temporary_, path_);
+  finished_ = true;
+}
+
+void write_file(const std::string& path, std::string_view text) {
+  NewFile target(path);
+  std::ofstream file(target.temporary(), std::ios::binary);
   file << text;
   file.close();
-  try {
-    if (!file) throw std::runtime_error(fmt::format("cannot write '{}'", path));
-    plots::replace_file(temporary.string(), path);
-  } catch (const std::runtime_error&) {
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
-    throw;
-  }
+  if (!file) throw std::runtime_error(fmt::format("cannot write '{}'", path));
+  target.finish();
 }
 
 }  // namespace carnot::apps

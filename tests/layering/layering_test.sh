@@ -16,10 +16,10 @@ scenes='carnot/scenes/[a-z0-9_]+\.h'
 # The rooms of a layer from the top floor down: folders, or headers that are not in a folder.
 lib_rooms='make_limit make_inlined_dynamics make_rattle_dynamics make_dynamics load_scene language laws dynamics transcription flow step tableau system scenes scene
   numerics'
-shooting_rooms='ompl_state_space continuation warm_start steering_function steer continue
+shooting_rooms='ompl_state_space solve_many continuation warm_start steering_function steer continue
   find_geodesics search extremal shoot path problem geodesic_options boundary_value_problem geodesic
   reason linear'
-apps_rooms='ompl main laboratory program benchmark paper verify tables flow geodesic continue run catalogue text'
+apps_rooms='ompl main laboratory program benchmark paper verify tables flow atlas geodesic continue run catalogue text'
 
 # climbing FOLDER PREFIX ROOMS: prints each include that goes to a floor above its own. FOLDER holds
 # the rooms, and PREFIX is how their headers are included.
@@ -74,7 +74,7 @@ broken() {
   [ ! -f $adapter ] || only "$std|$ompl|$shooting" $adapter
   only "$std|$posix|$eigen|gnuplot-iostream\.h|$core|carnot/plots/[a-z0-9_]+\.h" plots
   own=$(find apps -name '*.h' | sed -E 's:^apps/::; s:\.:\\.:; s:^(.*)/:(\1/)?:' | tr '\n' '|')
-  libraries='CLI/[A-Za-z]+\.hpp|nlohmann/[a-z_]+\.hpp|fmt/[a-z]+\.h'
+  libraries='CLI/[A-Za-z]+\.hpp|nlohmann/[a-z_]+\.hpp|fmt/[a-z]+\.h|boost/crc\.hpp|hdf5\.h'
   quad='boost/multiprecision/(eigen|float128)\.hpp'
   only "$std|$posix|$eigen|$libraries|$quad|${own}text/version\.h|carnot/[a-z0-9_/]+\.h" \
     $(find apps -type f ! -path '*/peers/*' ! -path '*/micro/*' ! -path '*/ompl/*')

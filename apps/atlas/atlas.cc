@@ -1,0 +1,351 @@
+// carnot atlas: many problems, on all cores, resumable.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include "atlas/atlas_output.h"
+#include "atlas/atlas_record.h"
+#include "atlas/journal.h"
+#include "atlas/problem_list.h"
+#include "carnot/shooting/solve_many.h"
+#include "catalogue/scene_choice.h"
+#include "catalogue/scene_texts.h"
+#include "run/delivery.h"
+#include "run/search_options.h"
+#include "run/subcommands.h"
+#include "text/numbers.h"
+#include "text/output_file.h"
+#include "text/progress_bar.h"
+#include "text/text_table.h"
+#include "text/version.h"
+
+namespace carnot::apps {
+namespace {
+
+constexpr const char* kAtlasFooter = R"(
+Each problem is solved as `carnot geodesic` solves it, on one thread, many at a time. Number i is the
+same in any order and on any number of threads. Problems come from one of
+  --problems FILE.csv   columns from_NAME, to_NAME, where wanted time and set_PARAMETER; * is free
+  --grid 'NAME=START:STOP:COUNT, ...'   with --from; coordinates not named keep the value of --to;
+                        around a whole period the repeated end is left out
+  --random N            targets as `carnot stress` draws them
+The result has one row (.csv), line (.jsonl) or entry of each data set (.h5, shaped like the grid) for
+each. What is done is kept in OUTPUT.journal until all is: after Ctrl-C, a kill or a full disk the same
+call with --resume goes on, and writes what an undisturbed one would have written, but for `seconds`,
+which --no-times leaves out.
+
+Examples
+  carnot atlas vehicle --problems poses.csv --output parked.csv
+  carnot atlas unicycle --from 0,0,0 --grid 'x=-3:3:13, y=-3:3:13, theta=-pi:pi:12' --output field.h5
+  carnot atlas trailer1 --random 1000 --seed 7 --output random.jsonl
+
+Exit status: 0 all were tried, 1 a file could not be written, 2 bad input or another call's journal,
+130 interrupted: --resume goes on.)";
+
+struct AtlasCall {
+  RunOptions run;
+  ListOptions list;
+  SearchOptions search;
+  std::string output;
+  std::string trajectories = "0";
+  bool resume = false;
+  bool no_times = false;
+};
+
+// A scene with some values of its parameters, and the limits that it has with them.
+struct Model {
+  Dynamics dynamics;
+  std::vector<Limit> limits;
+};
+
+// Models by their parameters. Safe to call from many threads.
+class Models {
+ public:
+  Models(const AtlasCall& call, const Run& run) : call_(call), run_(run) {
+    (void)of(run.parameters);  // refuses limits that are wrong
+  }
+
+  std::shared_ptr<const Model> of(const ParameterValues& parameters) {
+    constexpr std::size_t kMost = 64;
+    const std::lock_guard lock(mutex_);
+    const auto found = models_.find(parameters);
+    if (found != models_.end()) return found->second;
+    auto model = std::make_shared<Model>();
+    Run run = run_;
+    run.parameters = parameters;
+    if (parameters != run_.parameters) run.dynamics = run_.make(parameters);
+    model->limits = limits_of(call_.search, call_.run, run);
+    model->dynamics = std::move(run.dynamics);
+    models_.emplace(parameters, model);
+    order_.push_back(parameters);
+    if (order_.size() > kMost) {
+      models_.erase(order_.front());
+      order_.pop_front();
+    }
+    return model;
+  }
+
+ private:
+  const AtlasCall& call_;
+  const Run& run_;
+  std::mutex mutex_;
+  std::map<ParameterValues, std::shared_ptr<const Model>> models_;
+  std::deque<ParameterValues> order_;
+};
+
+// Of which a record of the journal consists. Enough for its cost not to count, few enough for a
+// kill not to cost much.
+long chunk_of(long problems) {
+  constexpr long kLargest = 16;
+  constexpr long kChunks = 256;
+  return std::clamp(problems / kChunks, 1L, kLargest);
+}
+
+Json identity_of(const AtlasCall& call, const Run& run, const ProblemList& list) {
+  const SearchOptions& search = call.search;
+  return {{"version", kVersion},
+          {"scene", run.entry->info.name},
+          {"text", is_scene_file(call.run.scene) ? text_of_scene(call.run.scene) : ""},
+          {"parameters", parameters_json(run)},
+          {"method", run.method.name},
+          {"seed", run.seed},
+          {"options",
+           {{"count", search.count},
+            {"all", search.all},
+            {"max_length", search.max_length},
+            {"starts", search.starts},
+            {"tolerance", search.tolerance},
+            {"minimiser", search.minimiser},
+            {"time_limit", search.time_limit},
+            {"mod_angles", search.mod_angles},
+            {"limits", search.limits},
+            {"discs", search.discs},
+            {"trajectories", call.trajectories}}},
+          {"problems", list.identity()}};
+}
+
+// What came of all of them.
+struct Summary {
+  long solved = 0;
+  std::map<std::string, long> labels;  // of the least
+  std::map<std::string, long> reasons;
+};
+
+void count(const Json& record, Summary& summary) {
+  const Json& geodesics = record.at("geodesics");
+  if (geodesics.empty()) {
+    ++summary.reasons[record.at("reason").get<std::string>()];
+    return;
+  }
+  ++summary.solved;
+  ++summary.labels[geodesics[0].at("label").get<std::string>()];
+}
+
+std::string atlas_text(const Json& json) {
+  std::vector<std::vector<std::string>> rows;
+  for (const char* key : {"scene", "problems", "solved", "failed", "resumed", "repaired"}) {
+    const Json& value = json.at(key);
+    const bool quiet =
+        (std::string(key) == "resumed" || std::string(key) == "repaired") && value.get<long>() == 0;
+    if (!quiet) rows.push_back({key, value.is_string() ? value.get<std::string>() : value.dump()});
+  }
+  for (const char* key : {"labels", "reasons"}) {
+    for (const auto& [name, number] : json.at(key).items()) rows.push_back({name, number.dump()});
+  }
+  rows.push_back({"wall time", fmt::format("{:.3g} s", json.at("elapsed_seconds").get<double>())});
+  return text_table(rows);
+}
+
+class Atlas {
+ public:
+  Atlas(const AtlasCall& call, std::vector<std::string> arguments)
+      : call_(call), arguments_(std::move(arguments)), run_(check(call.run)) {
+    check_output();
+    run_.samples = parse_integer("--trajectories", call.trajectories, 0, 100000);
+    options_ = check(call.search, run_);
+    list_ = make_problem_list(call.list, run_);
+    models_ = std::make_unique<Models>(call_, run_);
+    if (options_.all && has_ending(call_.output, ".h5")) {
+      refuse(
+          "--output", call_.output, "arrays have no room for --all", "--count K, or .csv, .jsonl");
+    }
+  }
+
+  int work() {
+    const auto began = std::chrono::steady_clock::now();
+    const long chunk = chunk_of(list_->size());
+    const long chunks = (list_->size() + chunk - 1) / chunk;
+    Journal journal(
+        call_.output + ".journal", identity_of(call_, run_, *list_), chunks, call_.resume);
+    long resumed = 0;
+    for (long k = 0; k < chunks; ++k) {
+      if (journal.holds(k)) resumed += std::min(chunk, list_->size() - k * chunk);
+    }
+    if (!solve(chunk, chunks, resumed, journal)) return interrupted_after(journal, chunk, chunks);
+    Result result;
+    result.json = result_head(arguments_);
+    result.json["scene"] = run_.entry->info.name;
+    result.json["parameters"] = parameters_json(run_);
+    result.json["method"] = run_.method.name;
+    const Summary summary = write(journal, chunks);
+    journal.remove();
+    result.json["problems"] = list_->size();
+    result.json["solved"] = summary.solved;
+    result.json["failed"] = list_->size() - summary.solved;
+    result.json["resumed"] = resumed;
+    result.json["repaired"] = journal.repaired();
+    result.json["labels"] = summary.labels;
+    result.json["reasons"] = summary.reasons;
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - began;
+    result.json["elapsed_seconds"] = elapsed.count();
+    result.text = [&] { return atlas_text(result.json) + "written: " + call_.output + '\n'; };
+    return deliver(result, run_.destination);
+  }
+
+ private:
+  void check_output() const {
+    if (call_.output.empty()) refuse_missing("--output", "a file ending in .h5, .csv or .jsonl");
+    check_output_file("--output", call_.output, {".h5", ".csv", ".jsonl"});
+  }
+
+  [[nodiscard]] AtlasProblem problem(long i) const {
+    AtlasProblem problem = list_->at(i);
+    problem.ends.limits = models_->of(problem.parameters)->limits;
+    return problem;
+  }
+
+  // False when interrupted.
+  bool solve(long chunk, long chunks, long resumed, Journal& journal) {
+    ManyProblems problems;
+    problems.count = list_->size();
+    problems.at = [&](long i) {
+      const AtlasProblem one = problem(i);
+      const Dynamics& dynamics = models_->of(one.parameters)->dynamics;
+      check_ends(one.ends, dynamics);
+      return problem_between(dynamics, one.ends);
+    };
+    ManyOptions options;
+    options.each = options_;
+    options.threads = run_.threads;
+    options.chunk = chunk;
+    options.wanted = [&](long k) { return !journal.holds(k); };
+    const double left = static_cast<double>(list_->size() - resumed);
+    ProgressBar bar("problems", left, run_.destination.quiet);
+    options.progress = [&, progress = bar.callback()](double fraction) {
+      const double all = static_cast<double>(chunks);
+      const double wanted = all * left / static_cast<double>(list_->size());
+      return progress(wanted > 0 ? fraction * all / wanted : 1);
+    };
+    return solve_many(problems, options, [&](long first, std::span<const GeodesicReport> reports) {
+      std::string text;
+      for (std::size_t i = 0; i < reports.size(); ++i) {
+        const long index = first + static_cast<long>(i);
+        text += json_line(atlas_record(index, problem(index), list_->parameters(), reports[i]));
+        text += '\n';
+      }
+      journal.append(first / chunk, text);
+      return true;
+    });
+  }
+
+  int interrupted_after(Journal& journal, long chunk, long chunks) const {
+    long done = 0;
+    for (long k = 0; k < chunks; ++k) {
+      if (journal.holds(k)) done += std::min(chunk, list_->size() - k * chunk);
+    }
+    if (done == 0) journal.remove();
+    complain(fmt::format("{} of {} problems are done{}",
+                         done,
+                         list_->size(),
+                         done > 0 ? ": the same call with --resume goes on" : ""));
+    return kInterrupted;
+  }
+
+  // The journal, in the order of the problems.
+  Summary write(const Journal& journal, long chunks) const {
+    AtlasLayout layout;
+    layout.coordinates = coordinate_names(*run_.entry);
+    layout.axes = list_->axes();
+    layout.parameters = list_->parameters();
+    layout.problems = list_->size();
+    layout.multipliers = run_.dynamics.multipliers;
+    layout.count = options_.all ? 0 : options_.count;
+    layout.samples = run_.samples;
+    layout.limited = !problem(0).ends.limits.empty();
+    layout.times = !call_.no_times;
+    layout.free_ends = list_->has_free();
+    layout.head = identity_of(call_, run_, *list_);
+    Summary summary;
+    NewFile file(call_.output);
+    {
+      const auto writer = make_atlas_writer(file.temporary(), call_.output, layout);
+      for_records(journal, chunks, [&](const Json& record) {
+        count(record, summary);
+        writer->add(record);
+      });
+      writer->finish();
+    }
+    file.finish();
+    return summary;
+  }
+
+  template <class Visit>
+  static void for_records(const Journal& journal, long chunks, const Visit& visit) {
+    for (long k = 0; k < chunks; ++k) {
+      const std::string text = journal.read(k);
+      for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = text.find('\n', at);
+        visit(Json::parse(text.begin() + static_cast<std::ptrdiff_t>(at),
+                          text.begin() + static_cast<std::ptrdiff_t>(end)));
+        at = end + 1;
+      }
+    }
+  }
+
+  const AtlasCall& call_;
+  std::vector<std::string> arguments_;
+  Run run_;
+  GeodesicOptions options_;
+  std::unique_ptr<ProblemList> list_;
+  std::unique_ptr<Models> models_;
+};
+
+}  // namespace
+
+void add_atlas(CLI::App& app, Invocation& invocation) {
+  auto call = std::make_shared<AtlasCall>();
+  call->run.searches = true;
+  CLI::App& atlas = *app.add_subcommand("atlas", "Find the geodesics of many problems.");
+  add_model_options(atlas, call->run);
+  const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
+    atlas.add_option(name, value, help)->type_name(type);
+  };
+  add("--problems", call->list.problems, "FILE", "problems, one a line, in a .csv file");
+  add("--grid", call->list.grid, "'NAME=A:B:N, ...'", "targets on a grid");
+  add("--random", call->list.random, "N", "random targets");
+  add("--from", call->list.from, "Q0", "configuration at the start, where it is always the same");
+  add("--to", call->list.to, "Q1", "configuration at the end, of coordinates not told elsewhere");
+  add("--time", call->list.time, "T", "how long it takes, > 0 (1)");
+  add_search_options(atlas, call->search);
+  add_effort_options(atlas, call->run);
+  add("--trajectories",
+      call->trajectories,
+      "N",
+      "times of each path to keep, both ends included (0)");
+  add("--output", call->output, "FILE", "the result: .csv, .jsonl or .h5");
+  atlas.add_flag("--resume", call->resume, "go on where the same call was ended");
+  atlas.add_flag("--no-times", call->no_times, "leave out seconds, the only thing that differs");
+  atlas.add_flag("--json", call->run.destination.json, "print a summary as one JSON object");
+  atlas.add_flag("--quiet", call->run.destination.quiet, "no progress bar");
+  atlas.footer(kAtlasFooter);
+  atlas.callback(
+      [call, &invocation] { invocation.exit_status = Atlas(*call, invocation.arguments).work(); });
+}
+
+}  // namespace carnot::apps
