@@ -9,6 +9,7 @@
 
 #include "atlas/problem_list.h"
 #include "carnot/shooting/find_geodesics.h"
+#include "carnot/shooting/solve_field.h"
 
 namespace carnot::apps {
 
@@ -17,5 +18,8 @@ Json atlas_record(long index,
                   const AtlasProblem& problem,
                   const std::vector<std::string>& parameters,
                   const GeodesicReport& report);
+
+// The same of a point of a field.
+Json field_record(long index, const AtlasProblem& problem, const Field& field);
 
 }  // namespace carnot::apps

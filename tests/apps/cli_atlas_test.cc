@@ -220,6 +220,32 @@ TEST_F(AtlasTest, ShapesArraysLikeTheGrid) {
   }
 }
 
+TEST_F(AtlasTest, FieldsAgreeWithSearches) {
+  const Words grid{"atlas",
+                   "unicycle",
+                   "--from",
+                   "0,0,0",
+                   "--grid",
+                   "x=0:1:6, y=-1:1:9, theta=-pi:pi:12",
+                   "--mod-angles",
+                   "--quiet",
+                   "--json",
+                   "--output"};
+  const Outcome outcome = sandbox.run(with(grid, {"field.csv", "--field", "--check", "20"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.json()["field"]["lower"], 0);
+  EXPECT_EQ(outcome.json()["solved"], 6 * 9 * 12);
+  ASSERT_EQ(sandbox.run(with(grid, {"a.csv"})).status, 0);
+  const std::vector<Words> field = cells_of(text_of("field.csv"));
+  const std::vector<Words> searched = cells_of(text_of("a.csv"));
+  ASSERT_EQ(field.size(), searched.size());
+  EXPECT_EQ(field[0], searched[0]);
+  for (std::size_t i = 1; i < field.size(); ++i) {
+    const double action = std::stod(searched[i][9]);
+    EXPECT_NEAR(std::stod(field[i][9]), action, 1e-8 * action) << i;
+  }
+}
+
 TEST_F(AtlasTest, RefusesBadInput) {
   const Words atlas{"atlas", "unicycle", "--output", "a.csv"};
   const auto refused = [&](const Words& more, const char* why) {
@@ -234,6 +260,9 @@ TEST_F(AtlasTest, RefusesBadInput) {
   refused({"--from", "0,0,0", "--to", "0,0,0", "--grid", "x=0:1:2,x=0:1:2"}, "given twice");
   refused({"--to", "0,0,0", "--grid", "x=0:1:2"}, "--from '': is missing");
   refused({"--problems", "none.csv"}, "No such file");
+  refused({"--random", "3", "--field"}, "--grid");
+  refused({"--from", "0,0,0", "--to", "0,0,0", "--grid", "x=0:1:2", "--field", "--count", "2"},
+          "one geodesic");
   expect_refused({"atlas", "unicycle", "--random", "3"}, HasSubstr("--output"), sandbox);
   expect_refused({"atlas", "unicycle", "--random", "3", "--output", "a.txt"},
                  HasSubstr("unknown ending"),

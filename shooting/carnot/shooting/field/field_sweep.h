@@ -1,0 +1,136 @@
+// The least actions from one start to all points of a grid, spread from neighbour to neighbour.
+//
+// A point keeps one extremal: p(0), the action A, p(T), the inverse of J = dq(T)/dp(0), and
+// S = (dp(T)/dp(0)) J^-1. The latter is the second derivative of the action by its target, p(T)
+// being the first. So for a neighbour at dq it says
+//
+//   p(0) + J^-1 dq     and     A + p(T).dq + dq'S dq / 2.
+//
+// Where that is less than the neighbour has, Newton's method on the end point makes an extremal of
+// it. Its J must have a determinant of the same sign: a change means that a conjugate time has
+// passed T on the way. Sweeps over all points, forward and back, go on until nothing changes.
+//
+// The grid is cut into slabs across its first axis, which do not depend on the number of threads:
+// each is swept by one thread, then borders of every second pair, then the others. So the result
+// does not depend on the number of threads either.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "carnot/shooting/boundary_value_problem.h"
+#include "carnot/shooting/linear/dense.h"
+
+namespace carnot::internal {
+
+// The targets: a grid of some coordinates, all others those of `to`.
+struct FieldGrid {
+  struct Axis {
+    int coordinate = 0;
+    std::vector<double> values;  // equidistant
+    bool around = false;         // the last is a neighbour of the first one, a period away
+    double period = 0;           // of the coordinate; 0: none
+  };
+  std::vector<double> to;
+  std::vector<Axis> axes;  // the first one slowest
+
+  [[nodiscard]] long size() const;
+  // The target of point i, without windings.
+  [[nodiscard]] std::vector<double> target(long i) const;
+};
+
+// What is known of a point. In the natural scales of the problem (natural_scales.h).
+struct FieldPoint {
+  bool known = false;
+  std::int8_t sign = 0;  // of det J
+  bool doubted = false;  // a neighbour promised less since, and Newton's method failed
+  int origin = -1;       // the seed that it comes from
+  // How often it was improved, and which of these its neighbours have been told: those of its slab,
+  // and those across a border, up and down.
+  int version = 0;
+  std::array<int, 3> told{};
+  double action = 0;
+  SmallVector p0;
+  SmallVector p1;  // p(T)
+  SmallMatrix inverse;
+  SmallMatrix slope;          // S
+  std::vector<int> windings;  // whole periods of the axes, added to the target
+};
+
+struct FieldCounts {
+  long pushes = 0;    // that promised less
+  long improved = 0;  // of these
+  long flows = 0;     // tangent flows
+  FieldCounts& operator+=(const FieldCounts& other);
+};
+
+class FieldSweep {
+ public:
+  // Of a scene without drift or potential, whose action is H T. Keeps references.
+  FieldSweep(const BoundaryValueProblem& problem, const FieldGrid& grid);
+
+  [[nodiscard]] const FieldPoint& operator[](long i) const { return points_[i]; }
+  [[nodiscard]] const FieldCounts& counts() const { return counts_; }
+  [[nodiscard]] std::vector<double> target(long i, const std::vector<int>& windings) const;
+  // Takes an extremal to point i that was found otherwise, where it is better. False where it
+  // does not lead there, or is no better.
+  bool seed(long i, const std::vector<double>& p0, const std::vector<int>& windings, int origin);
+  // Sweeps until nothing changes. False when stopped.
+  bool spread(int threads, const Progress& progress);
+  // Points that neighbours promised less than they have, in vain, or which have nothing.
+  [[nodiscard]] std::vector<long> doubtful() const;
+  // max |q(T) - target| of a flow of twice as many steps, in these units; infinite where it fails.
+  // Where it is not `allowed` the extremal is made again with more steps. Safe for different points
+  // at once.
+  double verify(long i, const std::vector<double>& units, double allowed);
+
+ private:
+  struct Neighbour {
+    long index = -1;
+    std::vector<int> windings;  // of the target there, next to this one
+    SmallVector dq;
+  };
+  // The neighbour along an axis, one step up or down; index -1 where there is none.
+  [[nodiscard]] Neighbour neighbour(long i, std::size_t axis, int direction) const;
+  [[nodiscard]] double promised(const FieldPoint& from, const SmallVector& dq) const;
+  // Steps of the method that are enough for most momenta of this size.
+  [[nodiscard]] long steps_for(const SmallVector& p0) const;
+  // Takes p0 nearer to `target` by flows alone, with the inverse Jacobian of a neighbour.
+  void approach(const SmallMatrix& inverse,
+                const std::vector<double>& target,
+                SmallVector& p0) const;
+  // An extremal to `target` by Newton's method from p0, with so many times these steps. False where
+  // there is none.
+  bool solve(const std::vector<double>& target,
+             FieldPoint& point,
+             FieldCounts& counts,
+             int factor = 1) const;
+  [[nodiscard]] double error_of(long i, const std::vector<double>& units, int factor) const;
+  // The extremal at `target`, dq beside that of `from`. False where there is none without a
+  // conjugate time on the way.
+  bool reach(const FieldPoint& from,
+             const std::vector<double>& target,
+             const SmallVector& dq,
+             FieldPoint& point,
+             FieldCounts& counts) const;
+  void push(long i, const Neighbour& to, FieldCounts& counts);
+  void push_all(long i, long first, long last, FieldCounts& counts);
+  void put(long i, FieldPoint point);
+  // Whether there is news of point i for these neighbours, who are told now.
+  bool has_news(long i, int whom);
+  // One sweep over the layers first to last, forward or back.
+  void sweep_slab(long first, long last, bool forward, FieldCounts& counts);
+  void cross(long layer, FieldCounts& counts);
+
+  const BoundaryValueProblem& problem_;
+  const FieldGrid& grid_;
+  int n_;
+  long layer_;  // points of a layer across the first axis
+  long layers_;
+  std::vector<FieldPoint> points_;
+  FieldCounts counts_;
+};
+
+}  // namespace carnot::internal

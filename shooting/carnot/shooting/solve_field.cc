@@ -1,0 +1,402 @@
+#include "carnot/shooting/solve_field.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <random>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "carnot/numerics/parallel.h"
+#include "carnot/shooting/field/field_sweep.h"
+#include "carnot/shooting/problem/natural_scales.h"
+#include "carnot/shooting/problem/rescaled.h"
+
+namespace carnot {
+
+using namespace internal;
+
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+bool has_potential(const BoundaryValueProblem& problem) {
+  const int n = problem.dynamics.dof;
+  const std::vector<double> rest(n, 0.0);
+  std::vector<double> velocity(n), lambda(problem.dynamics.multipliers);
+  for (const std::vector<double>& q : {problem.from, problem.to}) {
+    if (problem.dynamics.evaluate(0, q, rest, velocity, lambda).hamiltonian != 0) return true;
+  }
+  return false;
+}
+
+void require(bool ok, const std::string& what) {
+  if (!ok) throw std::invalid_argument(what);
+}
+
+void validate(const BoundaryValueProblem& problem, const std::vector<FieldAxis>& axes) {
+  constexpr double kEven = 1e-9;
+  problem.validate();
+  require(problem.dynamics.has_transcription() && !has_potential(problem),
+          "a field is of a scene with velocity constraints or driftless controls, and without a "
+          "potential");
+  require(!problem.has_free_ends(), "the ends of a field are not free");
+  require(problem.limits.empty(), "a field keeps to no limits");
+  require(!axes.empty(), "a field has at least one axis");
+  for (const FieldAxis& axis : axes) {
+    require(axis.coordinate >= 0 && axis.coordinate < problem.dynamics.dof && !axis.values.empty(),
+            "an axis of a field has a coordinate and values");
+    const std::vector<double>& x = axis.values;
+    const double step = x.size() > 1 ? x[1] - x[0] : 1;
+    bool even = step != 0;
+    for (std::size_t i = 1; i < x.size(); ++i) {
+      even = even && std::abs(x[i] - x[i - 1] - step) <= kEven * std::abs(step);
+    }
+    require(even, "the values of an axis are not equidistant");
+  }
+}
+
+// With at most `found` of `tried` trials a success, the share of successes is less than this with
+// 95 per cent confidence (Clopper and Pearson, Biometrika 26, 1934).
+double upper_share(long found, long tried) {
+  constexpr double kDoubt = 0.05;
+  double low = 0;
+  double high = 1;
+  for (int i = 0; i < 60 && found < tried; ++i) {
+    const double share = 0.5 * (low + high);
+    double term = std::pow(1 - share, static_cast<double>(tried));
+    double sum = term;
+    for (long k = 0; k < found; ++k) {
+      term *= static_cast<double>(tried - k) / static_cast<double>(k + 1) * share / (1 - share);
+      sum += term;
+    }
+    (sum > kDoubt ? low : high) = share;
+  }
+  return high;
+}
+
+class FieldSolver {
+ public:
+  FieldSolver(const BoundaryValueProblem& problem,
+              const std::vector<FieldAxis>& axes,
+              const FieldOptions& options)
+      : own_(problem),
+        options_(options),
+        own_grid_(grid_of(axes)),
+        scales_(scales_of()),
+        scaled_(rescaled(own_, scales_)),
+        grid_(in_scales()),
+        sweep_(scaled_, grid_) {}
+
+  Field run() {
+    const auto began = std::chrono::steady_clock::now();
+    Field field;
+    field.finished = spread_from_seeds() && settle_doubts() && check(field);
+    if (field.finished) collect(field);
+    field.searches = searches_;
+    const FieldCounts& counts = sweep_.counts();
+    field.pushes = counts.pushes;
+    field.improved = counts.improved;
+    field.flows = counts.flows;
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - began;
+    field.elapsed_seconds = elapsed.count();
+    return field;
+  }
+
+ private:
+  [[nodiscard]] FieldGrid grid_of(const std::vector<FieldAxis>& axes) const {
+    constexpr double kRounded = 1e-9;
+    FieldGrid grid;
+    grid.to = own_.to;
+    for (const FieldAxis& axis : axes) {
+      FieldGrid::Axis one{axis.coordinate, axis.values, false, 0};
+      if (options_.search.mod_angles) {
+        one.period = own_.dynamics.info.configuration[axis.coordinate].period;
+      }
+      if (one.period > 0 && axis.values.size() > 2) {
+        const double step = std::abs(axis.values[1] - axis.values[0]);
+        const double covered = step * static_cast<double>(axis.values.size());
+        one.around = std::abs(covered - one.period) <= kRounded * one.period;
+      }
+      grid.axes.push_back(std::move(one));
+    }
+    return grid;
+  }
+  // Those of the farthest corner.
+  [[nodiscard]] NaturalScales scales_of() const {
+    BoundaryValueProblem farthest = own_;
+    for (const FieldGrid::Axis& axis : own_grid_.axes) {
+      const double start = own_.from[axis.coordinate];
+      const double a = axis.values.front();
+      const double b = axis.values.back();
+      farthest.to[axis.coordinate] = std::abs(a - start) > std::abs(b - start) ? a : b;
+    }
+    return natural_scales(farthest);
+  }
+  [[nodiscard]] FieldGrid in_scales() const {
+    FieldGrid grid = own_grid_;
+    for (std::size_t j = 0; j < grid.to.size(); ++j) grid.to[j] /= scales_.q[j];
+    for (FieldGrid::Axis& axis : grid.axes) {
+      for (double& x : axis.values) x /= scales_.q[axis.coordinate];
+    }
+    return grid;
+  }
+
+  // What searches gave, by points; the work is done by all threads.
+  std::map<long, GeodesicReport> search(const std::vector<long>& points, std::uint64_t seed) {
+    std::vector<GeodesicReport> reports(points.size());
+    GeodesicOptions search = options_.search;
+    search.count = 1;
+    search.all = false;
+    search.samples = 0;
+    search.threads = 1;
+    search.seed = seed;
+    search.progress = [this](double) { return go_on(); };
+    parallel_for(static_cast<int>(points.size()), thread_count(options_.threads), [&](int k) {
+      BoundaryValueProblem problem = own_;
+      problem.to = own_grid_.target(points[k]);
+      try {
+        reports[k] = find_geodesics(problem, search);
+      } catch (const std::invalid_argument&) {  // e.g. dependent constraints at the target
+        reports[k].reason = Reason::kIrregularEnd;
+      }
+    });
+    std::map<long, GeodesicReport> found;
+    for (std::size_t k = 0; k < points.size(); ++k) found[points[k]] = std::move(reports[k]);
+    return found;
+  }
+
+  bool go_on() {
+    if (!stopped_ && options_.progress && !options_.progress(known_)) stopped_ = true;
+    return !stopped_;
+  }
+
+  // Gives what was found to the sweep. How many of them were better than what it had.
+  int take(const std::map<long, GeodesicReport>& found) {
+    int better = 0;
+    for (const auto& [i, report] : found) {
+      if (report.geodesics.empty()) {
+        failed_.emplace(i, report.reason);
+        continue;
+      }
+      const Geodesic& geodesic = report.geodesics[0];
+      std::vector<double> p0 = geodesic.p0;
+      for (int j = 0; j < scaled_.dynamics.dof; ++j) p0[j] /= scales_.momentum(j);
+      std::vector<int> windings;
+      for (const FieldGrid::Axis& axis : grid_.axes) {
+        windings.push_back(geodesic.windings.empty() ? 0 : geodesic.windings[axis.coordinate]);
+      }
+      labels_.push_back(geodesic.label);
+      if (sweep_.seed(i, p0, windings, static_cast<int>(labels_.size()) - 1)) ++better;
+      found_.insert_or_assign(i, geodesic);
+    }
+    return better;
+  }
+
+  bool spread() {
+    const Progress progress = [this](double known) {
+      known_ = known;
+      return go_on();
+    };
+    return sweep_.spread(thread_count(options_.threads), progress) && !stopped_;
+  }
+
+  // Points spread evenly: additive recurrences with powers of the root of x^(d + 1) = x + 1.
+  [[nodiscard]] std::vector<long> spread_points(long count) const {
+    const auto d = static_cast<double>(grid_.axes.size());
+    double root = 1.5;
+    for (int i = 0; i < 50; ++i) root = std::pow(1 + root, 1 / (d + 1));
+    std::set<long> points;
+    for (long k = 0; k < count; ++k) {
+      long index = 0;
+      double power = 1;
+      for (const FieldGrid::Axis& axis : grid_.axes) {
+        power /= root;
+        const double x = 0.5 + static_cast<double>(k) * power;
+        const auto size = static_cast<double>(axis.values.size());
+        const auto at = static_cast<long>((x - std::floor(x)) * size);
+        index = index * static_cast<long>(axis.values.size()) + at;
+      }
+      points.insert(index);
+    }
+    return {points.begin(), points.end()};
+  }
+
+  bool spread_from_seeds() {
+    constexpr long kPointsPerSeed = 2000;
+    constexpr long kFewest = 8;
+    constexpr long kMost = 64;
+    const long size = grid_.size();
+    const std::vector<long> seeds =
+        spread_points(std::min(size, std::clamp(size / kPointsPerSeed, kFewest, kMost)));
+    const auto found = search(seeds, options_.search.seed);
+    searches_ += static_cast<long>(seeds.size());
+    if (stopped_) return false;
+    (void)take(found);
+    tried_.insert(seeds.begin(), seeds.end());
+    return spread();
+  }
+
+  // Searches some of the points that neighbours promised less in vain, and spreads what that gives,
+  // until it gives nothing; and all that nothing is known of.
+  bool settle_doubts() {
+    constexpr std::size_t kAtOnce = 32;
+    bool in_vain = false;
+    for (;;) {
+      std::vector<long> doubtful;
+      for (const long i : sweep_.doubtful()) {
+        if (!tried_.contains(i) && !(in_vain && sweep_[i].known)) doubtful.push_back(i);
+      }
+      if (doubtful.empty()) return true;
+      std::vector<long> some;
+      const std::size_t stride = (doubtful.size() + kAtOnce - 1) / kAtOnce;
+      for (std::size_t k = 0; k < doubtful.size(); k += stride) some.push_back(doubtful[k]);
+      const auto found = search(some, options_.search.seed);
+      searches_ += static_cast<long>(some.size());
+      if (stopped_) return false;
+      tried_.insert(some.begin(), some.end());
+      const int better = take(found);
+      in_vain = better == 0;
+      if (better > 0 && !spread()) return false;
+    }
+  }
+
+  // A random sample, searched with another seed. What is lower is spread, and another sample drawn.
+  bool check(Field& field) {
+    constexpr int kRounds = 4;
+    constexpr double kLower = 1e-8;
+    const long count = std::min(options_.check, grid_.size());
+    std::seed_seq sequence{options_.search.seed, options_.search.seed >> 32U, std::uint64_t{1}};
+    std::mt19937_64 random(sequence);
+    for (int round = 0; round < kRounds && count > 0; ++round) {
+      std::set<long> sample;
+      while (static_cast<long>(sample.size()) < count) {
+        sample.insert(static_cast<long>(random() % static_cast<std::uint64_t>(grid_.size())));
+      }
+      const auto found = search({sample.begin(), sample.end()},
+                                options_.search.seed + 1 + static_cast<std::uint64_t>(round));
+      if (stopped_) return false;
+      field.checked = count;
+      field.lower = 0;
+      for (const auto& [i, report] : found) {
+        if (report.geodesics.empty()) continue;
+        const double action = report.geodesics[0].action;
+        if (action < (1 - kLower) * action_of(i)) ++field.lower;
+      }
+      field.bound = upper_share(field.lower, field.checked);
+      if (field.lower == 0 || round + 1 == kRounds) return true;
+      if (take(found) > 0 && !(spread() && settle_doubts())) return false;
+    }
+    return true;
+  }
+
+  // In the units of the scene; infinite where nothing is known.
+  [[nodiscard]] double action_of(long i) const {
+    double action = std::numeric_limits<double>::infinity();
+    if (sweep_[i].known) action = sweep_[i].action * scales_.action;
+    const auto found = found_.find(i);
+    return found == found_.end() ? action : std::min(action, found->second.action);
+  }
+
+  // Verifies all points; those that do not pass take what a search gives.
+  void collect(Field& field) {
+    const long size = grid_.size();
+    const int n = scaled_.dynamics.dof;
+    field.dof = n;
+    field.action.assign(size, kNaN);
+    field.p0.assign(size * n, kNaN);
+    field.error.assign(size, kNaN);
+    field.verification.assign(size, Verification::kSingle);
+    field.label.assign(size, Label::kUnknown);
+    field.reason.assign(size, Reason::kNone);
+    const double largest = *std::max_element(scales_.q.begin(), scales_.q.end());
+    const double allowed =
+        options_.search.absolute_tolerance.value_or(options_.search.tolerance * largest);
+    const int threads = thread_count(options_.threads);
+    constexpr long kBlock = 256;
+    const long blocks = (size + kBlock - 1) / kBlock;
+    parallel_for(static_cast<int>(blocks), threads, [&](int block) {
+      for (long i = block * kBlock; i < std::min(size, (block + 1) * kBlock); ++i) {
+        const FieldPoint& point = sweep_[i];
+        if (!point.known) continue;
+        field.error[i] = sweep_.verify(i, scales_.q, allowed);
+        field.action[i] = point.action * scales_.action;
+        field.label[i] = labels_[point.origin];
+        for (int j = 0; j < n; ++j) field.p0[i * n + j] = point.p0[j] * scales_.momentum(j);
+      }
+    });
+    std::vector<long> poor;
+    for (long i = 0; i < size; ++i) {
+      if (!(field.error[i] <= allowed) && !found_.contains(i) && !failed_.contains(i)) {
+        poor.push_back(i);
+      }
+    }
+    const auto found = search(poor, options_.search.seed);
+    searches_ += static_cast<long>(poor.size());
+    for (const auto& [i, report] : found) {
+      if (report.geodesics.empty()) {
+        failed_.emplace(i, report.reason);
+      } else {
+        found_.insert_or_assign(i, report.geodesics[0]);
+      }
+    }
+    for (long i = 0; i < size; ++i) settle(i, allowed, field);
+  }
+
+  // What a search says of point i, where that is better.
+  void settle(long i, double allowed, Field& field) const {
+    constexpr double kLower = 1e-12;
+    const int n = field.dof;
+    const bool good = field.error[i] <= allowed;
+    const auto found = found_.find(i);
+    if (found != found_.end() && (!good || found->second.action < (1 - kLower) * field.action[i])) {
+      const Geodesic& geodesic = found->second;
+      field.action[i] = geodesic.action;
+      std::copy(geodesic.p0.begin(), geodesic.p0.end(), field.p0.begin() + i * n);
+      field.verification[i] = geodesic.verification;
+      field.error[i] = geodesic.verification == Verification::kKnots ? geodesic.knot_defect
+                                                                     : geodesic.endpoint_error;
+      field.label[i] = geodesic.label;
+    } else if (!good) {
+      const auto failed = failed_.find(i);
+      field.reason[i] = failed == failed_.end() ? Reason::kNotVerified : failed->second;
+      field.action[i] = kNaN;
+      field.error[i] = kNaN;
+      std::fill_n(field.p0.begin() + i * n, n, kNaN);
+      field.label[i] = Label::kUnknown;
+    }
+  }
+
+  const BoundaryValueProblem& own_;
+  const FieldOptions& options_;
+  FieldGrid own_grid_;
+  NaturalScales scales_;
+  BoundaryValueProblem scaled_;
+  FieldGrid grid_;
+  FieldSweep sweep_;
+  std::vector<Label> labels_;  // of seeds
+  std::map<long, Geodesic> found_;
+  std::map<long, Reason> failed_;
+  std::set<long> tried_;
+  long searches_ = 0;
+  std::atomic<double> known_{0};
+  std::atomic<bool> stopped_{false};
+};
+
+}  // namespace
+
+Field solve_field(const BoundaryValueProblem& problem,
+                  const std::vector<FieldAxis>& axes,
+                  const FieldOptions& options) {
+  validate(problem, axes);
+  options.search.validate(problem);
+  return FieldSolver(problem, axes, options).run();
+}
+
+}  // namespace carnot
