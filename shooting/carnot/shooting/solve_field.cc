@@ -329,6 +329,12 @@ class FieldSolver {
         field.action[i] = point.action * scales_.action;
         field.label[i] = labels_[point.origin];
         for (int j = 0; j < n; ++j) field.p0[i * n + j] = point.p0[j] * scales_.momentum(j);
+        const bool turns =
+            std::any_of(point.windings.begin(), point.windings.end(), [](int w) { return w != 0; });
+        if (turns || own_grid_.target(i) != own_.from) continue;
+        // The path that does not move.
+        field.action[i] = field.error[i] = 0;
+        std::fill_n(field.p0.begin() + i * n, n, 0.0);
       }
     });
     std::vector<long> poor;
