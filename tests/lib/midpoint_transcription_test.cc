@@ -248,7 +248,8 @@ TYPED_TEST(MidpointTest, MidpointRuleIsTheDiscreteLegendreTransform) {
 // M = diag(2 + sin q_i), G = (cos q_j), V = |q|^2/2.
 template <int n>
 struct Separate {
-  static void entries(const void* /*system*/, const double* q, bool slopes, double* out) {
+  static void entries(
+      const void* /*system*/, const double* q, const GaugeUnits&, bool slopes, double* out) {
     const auto write = [&](double value, int direction, double slope) {
       out[0] = value;
       if (slopes) {
@@ -272,6 +273,7 @@ struct Separate {
                       const double* q,
                       const double* v,
                       const double* lambda,
+                      const GaugeUnits&,
                       double* l_qq) {
     std::fill_n(l_qq, n * n, 0.0);
     for (int i = 0; i < n; ++i) {

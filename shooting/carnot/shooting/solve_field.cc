@@ -246,7 +246,8 @@ class FieldSolver {
   // Searches some of the points that neighbours promised less in vain, and spreads what that gives,
   // until it gives nothing; and all that nothing is known of.
   bool settle_doubts() {
-    constexpr std::size_t kAtOnce = 32;
+    constexpr std::size_t kLeast = 32;
+    constexpr std::size_t kShare = 16;  // of them at once: neighbours profit from each other
     bool in_vain = false;
     for (;;) {
       std::vector<long> doubtful;
@@ -255,7 +256,8 @@ class FieldSolver {
       }
       if (doubtful.empty()) return true;
       std::vector<long> some;
-      const std::size_t stride = (doubtful.size() + kAtOnce - 1) / kAtOnce;
+      const std::size_t at_once = std::max(kLeast, doubtful.size() / kShare);
+      const std::size_t stride = (doubtful.size() + at_once - 1) / at_once;
       for (std::size_t k = 0; k < doubtful.size(); k += stride) some.push_back(doubtful[k]);
       const auto found = search(some, options_.search.seed);
       searches_ += static_cast<long>(some.size());
