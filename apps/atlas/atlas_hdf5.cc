@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr long kRows = 4096;           // problems written at a time
-constexpr std::size_t kText = 24;      // bytes of a text: the longest code has 21
+constexpr std::size_t kTextSize = 24;      // bytes of a text: the longest code has 21
 constexpr std::size_t kConjugate = 8;  // conjugate times kept of a geodesic
 
 // An identifier of the library and how it is closed.
@@ -73,7 +73,7 @@ class Column {
       : kind_(kind),
         problems_(problems),
         type_(kind == Kind::kText
-                  ? text_type(kText)
+                  ? text_type(kTextSize)
                   : Handle(H5Tcopy(kind == Kind::kReal ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT32),
                            H5Tclose)),
         space_(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose),
@@ -100,7 +100,7 @@ class Column {
           break;
         case Kind::kText: {
           std::string text = value.is_string() ? value.get<std::string>() : "";
-          text.resize(kText);
+          text.resize(kTextSize);
           texts_ += text;
           break;
         }

@@ -220,7 +220,7 @@ TEST_P(TextTwins, TurnsVelocitiesIntoTheSameMomenta) {
   }
 }
 
-// The entries of the transcription and the Hessian of its Lagrangian.
+// The entries of the transcription and the Hessian of its Lagrangian, in several units of a gauge.
 TEST_P(TextTwins, IsTranscribedAlike) {
   ASSERT_EQ(text_.has_transcription(), twin_.has_transcription());
   if (!twin_.has_transcription()) return;
@@ -231,7 +231,10 @@ TEST_P(TextTwins, IsTranscribedAlike) {
   const int n = f.dof;
   // Through Cholesky factors of F'F, whose condition is up to a hundred at these points.
   constexpr double kTolerance = 100 * kRoundOff;
+  std::vector<double> sizes;
+  for (int j = 0; j < n; ++j) sizes.push_back(0.5 + 0.4 * j);
   for (int i = 0; i < 20; ++i) {
+    const GaugeUnits units = i % 2 == 0 ? GaugeUnits{} : GaugeUnits{sizes.data(), 0.7};
     const std::vector<double> q = random(n);
     const std::vector<double> v = random(n);
     const std::vector<double> lambda = random(f.constraints);
@@ -239,14 +242,14 @@ TEST_P(TextTwins, IsTranscribedAlike) {
       const int size = entry_count(f) * (slopes ? row_length(n) : 1);
       std::vector<double> a(static_cast<std::size_t>(size));
       std::vector<double> b(a.size());
-      f.entries(text_.system.get(), q.data(), slopes, a.data());
-      g.entries(twin_.system.get(), q.data(), slopes, b.data());
+      f.entries(text_.system.get(), q.data(), units, slopes, a.data());
+      g.entries(twin_.system.get(), q.data(), units, slopes, b.data());
       EXPECT_LE(distance(a, b), kTolerance * (1 + largest(b)));
     }
     std::vector<double> a(static_cast<std::size_t>(n * n));
     std::vector<double> b(a.size());
-    f.hessian(text_.system.get(), q.data(), v.data(), lambda.data(), a.data());
-    g.hessian(twin_.system.get(), q.data(), v.data(), lambda.data(), b.data());
+    f.hessian(text_.system.get(), q.data(), v.data(), lambda.data(), units, a.data());
+    g.hessian(twin_.system.get(), q.data(), v.data(), lambda.data(), units, b.data());
     EXPECT_LE(distance(a, b), kTolerance * (1 + largest(b)));
   }
 }
