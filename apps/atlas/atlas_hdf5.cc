@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr long kRows = 4096;           // problems written at a time
-constexpr std::size_t kTextSize = 24;      // bytes of a text: the longest code has 21
+constexpr std::size_t kTextSize = 24;  // bytes of a text: the longest code has 21
 constexpr std::size_t kConjugate = 8;  // conjugate times kept of a geodesic
 
 // An identifier of the library and how it is closed.
