@@ -3,15 +3,14 @@
 
 #include <algorithm>
 #include <chrono>
-#include <deque>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <utility>
 
 #include "atlas/atlas_output.h"
 #include "atlas/atlas_record.h"
 #include "atlas/journal.h"
+#include "atlas/models.h"
 #include "atlas/problem_list.h"
 #include "carnot/shooting/solve_field.h"
 #include "carnot/shooting/solve_many.h"
@@ -63,47 +62,6 @@ struct AtlasCall {
   bool no_times = false;
   bool field = false;
   std::string check = "100";
-};
-
-// A scene with some values of its parameters, and the limits that it has with them.
-struct Model {
-  Dynamics dynamics;
-  std::vector<Limit> limits;
-};
-
-// Models by their parameters. Safe to call from many threads.
-class Models {
- public:
-  Models(const AtlasCall& call, const Run& run) : call_(call), run_(run) {
-    (void)of(run.parameters);  // refuses limits that are wrong
-  }
-
-  std::shared_ptr<const Model> of(const ParameterValues& parameters) {
-    constexpr std::size_t kMost = 64;
-    const std::lock_guard lock(mutex_);
-    const auto found = models_.find(parameters);
-    if (found != models_.end()) return found->second;
-    auto model = std::make_shared<Model>();
-    Run run = run_;
-    run.parameters = parameters;
-    if (parameters != run_.parameters) run.dynamics = run_.make(parameters);
-    model->limits = limits_of(call_.search, call_.run, run);
-    model->dynamics = std::move(run.dynamics);
-    models_.emplace(parameters, model);
-    order_.push_back(parameters);
-    if (order_.size() > kMost) {
-      models_.erase(order_.front());
-      order_.pop_front();
-    }
-    return model;
-  }
-
- private:
-  const AtlasCall& call_;
-  const Run& run_;
-  std::mutex mutex_;
-  std::map<ParameterValues, std::shared_ptr<const Model>> models_;
-  std::deque<ParameterValues> order_;
 };
 
 // Of which a record of the journal consists. Enough for its cost not to count, few enough for a
@@ -178,7 +136,7 @@ class Atlas {
     run_.samples = parse_integer("--trajectories", call.trajectories, 0, 100000);
     options_ = check(call.search, run_);
     list_ = make_problem_list(call.list, run_);
-    models_ = std::make_unique<Models>(call_, run_);
+    models_ = std::make_unique<Models>(call_.search, call_.run, run_);
     if (call_.field) check_field();
     if (options_.all && has_ending(call_.output, ".h5")) {
       refuse(

@@ -72,14 +72,6 @@ Json value_of(const Json& object, const std::string& key) {
   return object.contains(key) ? object.at(key) : Json(nullptr);
 }
 
-Json lowest_slack(const Json& geodesic) {
-  double lowest = std::numeric_limits<double>::infinity();
-  for (const Json& limit : value_of(geodesic, "limits")) {
-    lowest = std::min(lowest, limit.at("lowest_slack").get<double>());
-  }
-  return std::isfinite(lowest) ? Json(lowest) : Json(nullptr);
-}
-
 // One row a geodesic, or one where there is none.
 class CsvWriter : public TextWriter {
  public:
@@ -167,6 +159,14 @@ class CsvWriter : public TextWriter {
 };
 
 }  // namespace
+
+Json lowest_slack(const Json& geodesic) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Json& limit : geodesic.value("limits", Json::array())) {
+    lowest = std::min(lowest, limit.at("lowest_slack").get<double>());
+  }
+  return std::isfinite(lowest) ? Json(lowest) : Json(nullptr);
+}
 
 std::unique_ptr<AtlasWriter> make_atlas_writer(const std::string& path,
                                                const std::string& name,

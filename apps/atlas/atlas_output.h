@@ -32,6 +32,9 @@ class AtlasWriter {
   virtual void finish() = 0;
 };
 
+// The closest approach to any limit of a geodesic in a record; null without limits.
+Json lowest_slack(const Json& geodesic);
+
 // By the ending of the file: .csv, .jsonl or .h5. `path` is where it is written, `name` what it is
 // called.
 std::unique_ptr<AtlasWriter> make_atlas_writer(const std::string& path,
