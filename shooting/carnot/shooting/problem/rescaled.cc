@@ -17,23 +17,18 @@ constexpr int kLanes = kErasedLanes;
 // What the calls of a rescaled scene take: the scene, and the unit of each number.
 struct Rescaled {
   Dynamics own;
-  std::vector<double> z;       // of phase points, 2n
-  std::vector<double> rows;    // of the transcription's constraints
-  std::vector<double> lambda;  // of multipliers
-  double time;
-  double action;
+  NaturalScales scales;
+  std::vector<double> z;  // the units of phase points, 2n
   SystemFunctions functions;
   TranscriptionFunctions transcription;
 
-  Rescaled(const Dynamics& dynamics, const NaturalScales& scales);
+  Rescaled(const Dynamics& dynamics, const NaturalScales& natural);
 
   static const Rescaled& from(const void* opaque) { return *static_cast<const Rescaled*>(opaque); }
   [[nodiscard]] int dof() const { return own.dof; }
   [[nodiscard]] const void* system() const { return own.system.get(); }
   // With these the multipliers' term of l, in units of an energy, has the weight one.
-  [[nodiscard]] GaugeUnits gauge() const { return {z.data(), 1 / (action * time)}; }
-  [[nodiscard]] double energy() const { return action / time; }
-  [[nodiscard]] double length() const { return std::sqrt(action * time); }
+  [[nodiscard]] GaugeUnits gauge() const { return {z.data(), 1 / (scales.action * scales.time)}; }
 
   // `count` numbers in units of the scene; and back. Both may be the same place.
   static void scale(const double* from, const std::vector<double>& units, int count, double* to) {
@@ -47,7 +42,7 @@ struct Rescaled {
     for (int i = 0; i < count * kLanes; ++i) to[i] = from[i] * z[i / kLanes];
   }
   [[nodiscard]] StepPlan in_own_time(StepPlan plan) const {
-    for (double* t : {&plan.start, &plan.end, &plan.step, &plan.last}) *t *= time;
+    for (double* t : {&plan.start, &plan.end, &plan.step, &plan.last}) *t *= scales.time;
     return plan;
   }
 };
@@ -66,9 +61,9 @@ RateStatus rate(const void* opaque, double t, const double* z, double* y, double
   const int size = 2 * r.dof();
   double* const at = scratch(size);
   Rescaled::scale(z, r.z, size, at);
-  const RateStatus status = r.own.functions->rate(r.system(), r.time * t, at, y, z_dot);
+  const RateStatus status = r.own.functions->rate(r.system(), r.scales.time * t, at, y, z_dot);
   if (status != RateStatus::kOk) return status;
-  for (int i = 0; i < size; ++i) z_dot[i] *= r.time / r.z[i];
+  for (int i = 0; i < size; ++i) z_dot[i] *= r.scales.time / r.z[i];
   return status;
 }
 
@@ -77,10 +72,10 @@ RateStatus jacobian(const void* opaque, double t, const double* z, const double*
   const int size = 2 * r.dof();
   double* const at = scratch(size);
   Rescaled::scale(z, r.z, size, at);
-  const RateStatus status = r.own.functions->jacobian(r.system(), r.time * t, at, y, out);
+  const RateStatus status = r.own.functions->jacobian(r.system(), r.scales.time * t, at, y, out);
   for (int column = 0; column < size; ++column) {
     for (int row = 0; row < size; ++row) {
-      out[column * size + row] *= r.time * r.z[column] / r.z[row];
+      out[column * size + row] *= r.scales.time * r.z[column] / r.z[row];
     }
   }
   return status;
@@ -96,7 +91,7 @@ Points points_of(const Rescaled& r, const double* t, const double* z, int more_r
   const int size = 2 * r.dof();
   double* const memory = scratch((1 + size + more_rows) * kLanes);
   const Points points{memory, memory + kLanes, memory + (1 + size) * kLanes};
-  for (int l = 0; l < kLanes; ++l) points.t[l] = r.time * t[l];
+  for (int l = 0; l < kLanes; ++l) points.t[l] = r.scales.time * t[l];
   r.scale_rows(z, size, points.z);
   return points;
 }
@@ -105,7 +100,7 @@ bool rates(const void* opaque, const double* t, const double* z, double* y, doub
   const Rescaled& r = Rescaled::from(opaque);
   const Points at = points_of(r, t, z, 0);
   if (!r.own.functions->rates(r.system(), at.t, at.z, y, z_dot)) return false;
-  for (int i = 0; i < 2 * r.dof() * kLanes; ++i) z_dot[i] *= r.time / r.z[i / kLanes];
+  for (int i = 0; i < 2 * r.dof() * kLanes; ++i) z_dot[i] *= r.scales.time / r.z[i / kLanes];
   return true;
 }
 
@@ -116,7 +111,7 @@ bool jacobians(
   const Points at = points_of(r, t, z, 0);
   if (!r.own.functions->jacobians(r.system(), at.t, at.z, weights, jacobian)) return false;
   for (int entry = 0; entry < size * size; ++entry) {
-    const double unit = r.time * r.z[entry % size] / r.z[entry / size];
+    const double unit = r.scales.time * r.z[entry % size] / r.z[entry / size];
     for (int l = 0; l < kLanes; ++l) jacobian[entry * kLanes + l] *= unit;
   }
   return true;
@@ -129,7 +124,8 @@ double hamiltonian(
   double* const at = scratch(2 * n);
   for (int j = 0; j < n; ++j) at[j] = q[j] * r.z[j];
   for (int j = 0; j < n; ++j) at[n + j] = p[j] * r.z[n + j];
-  return r.own.functions->hamiltonian(r.system(), r.time * t, at, at + n, y) / r.energy();
+  return r.own.functions->hamiltonian(r.system(), r.scales.time * t, at, at + n, y) /
+         r.scales.energy();
 }
 
 RateStatus find_multipliers(const void* opaque,
@@ -144,8 +140,8 @@ RateStatus find_multipliers(const void* opaque,
   for (int j = 0; j < n; ++j) at[j] = q[j] * r.z[j];
   for (int j = 0; j < n; ++j) at[n + j] = p[j] * r.z[n + j];
   const RateStatus status =
-      r.own.functions->find_multipliers(r.system(), r.time * t, at, at + n, y, lambda);
-  Rescaled::unscale(lambda, r.lambda, r.own.multipliers, lambda);
+      r.own.functions->find_multipliers(r.system(), r.scales.time * t, at, at + n, y, lambda);
+  Rescaled::unscale(lambda, r.scales.multipliers, r.own.multipliers, lambda);
   return status;
 }
 
@@ -162,12 +158,12 @@ void measure(const void* opaque,
   const Points at = points_of(r, t, z, n + 1);
   double* const steps = at.rest + n * kLanes;
   r.scale_rows(dq, n, at.rest);
-  for (int l = 0; l < kLanes; ++l) steps[l] = r.time * weights[l];
+  for (int l = 0; l < kLanes; ++l) steps[l] = r.scales.time * weights[l];
   r.own.functions->measure(r.system(), count, at.t, steps, at.z, at.rest, y, out);
   for (int l = 0; l < count; ++l) {
-    out[l].lagrangian /= r.energy();
-    out[l].speed *= r.time / r.length();
-    out[l].power *= r.time / r.energy();
+    out[l].lagrangian /= r.scales.energy();
+    out[l].speed *= r.scales.time / r.scales.length();
+    out[l].power *= r.scales.time / r.scales.energy();
   }
 }
 
@@ -176,8 +172,8 @@ NodeMeasures measure_node(const void* opaque, double t, const double* z, double*
   const int size = 2 * r.dof();
   double* const at = scratch(size);
   Rescaled::scale(z, r.z, size, at);
-  NodeMeasures measures = r.own.functions->measure_node(r.system(), r.time * t, at, y);
-  measures.hamiltonian /= r.energy();
+  NodeMeasures measures = r.own.functions->measure_node(r.system(), r.scales.time * t, at, y);
+  measures.hamiltonian /= r.scales.energy();
   return measures;
 }
 
@@ -208,13 +204,13 @@ void entries(
   };
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j <= i; ++j) {
-      convert(velocity_unit(r, i) * velocity_unit(r, j) / (r.action * r.time));
+      convert(velocity_unit(r, i) * velocity_unit(r, j) / (r.scales.action * r.scales.time));
     }
   }
   for (int i = 0; i < r.own.transcribed; ++i) {
-    for (int j = 0; j < n; ++j) convert(velocity_unit(r, j) / r.rows[i]);
+    for (int j = 0; j < n; ++j) convert(velocity_unit(r, j) / r.scales.rows[i]);
   }
-  convert(1 / r.energy());
+  convert(1 / r.scales.energy());
 }
 
 void hessian(const void* opaque,
@@ -230,17 +226,17 @@ void hessian(const void* opaque,
   double* const velocity = at + n;
   double* const multipliers = velocity + n;
   for (int j = 0; j < n; ++j) at[j] = q[j] * r.z[j];
-  for (int j = 0; j < n; ++j) velocity[j] = v[j] * velocity_unit(r, j) / r.time;
-  for (int i = 0; i < k; ++i) multipliers[i] = lambda[i] * r.action / r.rows[i];
+  for (int j = 0; j < n; ++j) velocity[j] = v[j] * velocity_unit(r, j) / r.scales.time;
+  for (int i = 0; i < k; ++i) multipliers[i] = lambda[i] * r.scales.action / r.scales.rows[i];
   r.own.transcription->hessian(r.system(), at, velocity, multipliers, r.gauge(), l_qq);
   for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j) l_qq[i * n + j] *= r.z[i] * r.z[j] / r.energy();
+    for (int j = 0; j < n; ++j) l_qq[i * n + j] *= r.z[i] * r.z[j] / r.scales.energy();
   }
 }
 
 // --- flows ---------------------------------------------------------------------------------------
 
-void convert(const Rescaled& r, FlowReport& report) { report.time_reached /= r.time; }
+void convert(const Rescaled& r, FlowReport& report) { report.time_reached /= r.scales.time; }
 
 FlowReport flow(const void* opaque, const void*, const StepPlan& plan, double* z) {
   const Rescaled& r = Rescaled::from(opaque);
@@ -276,25 +272,26 @@ FlowSummary monitored_flow(const void* opaque,
   const Rescaled& r = Rescaled::from(opaque);
   const int n = r.dof();
   MonitorOptions own = options;
-  for (double& t : own.times) t *= r.time;
+  for (double& t : own.times) t *= r.scales.time;
   Rescaled::scale(z, r.z, 2 * n, z);
   FlowSummary summary =
       r.own.monitored_flow(r.in_own_time(plan), {z, static_cast<std::size_t>(2 * n)}, own);
   Rescaled::unscale(z, r.z, 2 * n, z);
   convert(r, summary.report);
-  summary.action /= r.action;
-  summary.length /= r.length();
-  summary.energy_drift /= r.energy();
-  summary.energy_balance /= r.energy();
+  summary.action /= r.scales.action;
+  summary.length /= r.scales.length();
+  summary.energy_drift /= r.scales.energy();
+  summary.energy_balance /= r.scales.energy();
   Trajectory& samples = summary.trajectory;
-  for (double& t : samples.t) t /= r.time;
-  for (double& energy : samples.hamiltonian) energy /= r.energy();
+  for (double& t : samples.t) t /= r.scales.time;
+  for (double& energy : samples.hamiltonian) energy /= r.scales.energy();
   for (auto& q : samples.q) Rescaled::unscale(q.data(), r.z, n, q.data());
   for (auto& p : samples.p) {
     for (int j = 0; j < n; ++j) p[j] /= r.z[n + j];
   }
   for (auto& lambda : samples.lambda) {
-    Rescaled::unscale(lambda.data(), r.lambda, static_cast<int>(lambda.size()), lambda.data());
+    Rescaled::unscale(
+        lambda.data(), r.scales.multipliers, static_cast<int>(lambda.size()), lambda.data());
   }
   return summary;
 }
@@ -313,7 +310,7 @@ std::vector<double> phase_point(const Rescaled& r, const double* q, const double
 Regularity regularity(const void* opaque, double t, const double* q, const double* p) {
   const Rescaled& r = Rescaled::from(opaque);
   const std::vector<double> z = phase_point(r, q, p);
-  return r.own.calls.regularity(r.system(), r.time * t, z.data(), z.data() + r.dof());
+  return r.own.calls.regularity(r.system(), r.scales.time * t, z.data(), z.data() + r.dof());
 }
 
 double chart(const void* opaque, const double* q) {
@@ -330,11 +327,11 @@ double momentum(
   std::vector<double> at(n);
   std::vector<double> multipliers(r.own.multipliers);
   Rescaled::scale(q, r.z, n, at.data());
-  Rescaled::scale(lambda, r.lambda, r.own.multipliers, multipliers.data());
-  for (int j = 0; j < n; ++j) q_dot[j] *= r.z[j] / r.time;
+  Rescaled::scale(lambda, r.scales.multipliers, r.own.multipliers, multipliers.data());
+  for (int j = 0; j < n; ++j) q_dot[j] *= r.z[j] / r.scales.time;
   const double violated =
-      r.own.calls.momentum(r.system(), r.time * t, at.data(), q_dot, multipliers.data(), p);
-  for (int j = 0; j < n; ++j) q_dot[j] *= r.time / r.z[j];
+      r.own.calls.momentum(r.system(), r.scales.time * t, at.data(), q_dot, multipliers.data(), p);
+  for (int j = 0; j < n; ++j) q_dot[j] *= r.scales.time / r.z[j];
   for (int j = 0; j < n; ++j) p[j] /= r.z[n + j];
   return violated;
 }
@@ -343,13 +340,13 @@ double momentum(
 HolonomicResiduals holonomic_residuals(const void* opaque, double t, const double* z) {
   const Rescaled& r = Rescaled::from(opaque);
   const std::vector<double> at = phase_point(r, z, z + r.dof());
-  return r.own.calls.holonomic_residuals(r.system(), r.time * t, at.data());
+  return r.own.calls.holonomic_residuals(r.system(), r.scales.time * t, at.data());
 }
 
 bool project_on_manifold(const void* opaque, double t, double* z) {
   const Rescaled& r = Rescaled::from(opaque);
   Rescaled::scale(z, r.z, 2 * r.dof(), z);
-  const bool projected = r.own.calls.project_on_manifold(r.system(), r.time * t, z);
+  const bool projected = r.own.calls.project_on_manifold(r.system(), r.scales.time * t, z);
   Rescaled::unscale(z, r.z, 2 * r.dof(), z);
   return projected;
 }
@@ -358,7 +355,8 @@ bool tangent_projector(const void* opaque, double t, const double* z, double* pr
   const Rescaled& r = Rescaled::from(opaque);
   const int size = 2 * r.dof();
   const std::vector<double> at = phase_point(r, z, z + r.dof());
-  if (!r.own.calls.tangent_projector(r.system(), r.time * t, at.data(), projector)) return false;
+  if (!r.own.calls.tangent_projector(r.system(), r.scales.time * t, at.data(), projector))
+    return false;
   for (int row = 0; row < size; ++row) {
     for (int column = 0; column < size; ++column) {
       projector[row * size + column] *= r.z[column] / r.z[row];
@@ -367,14 +365,8 @@ bool tangent_projector(const void* opaque, double t, const double* z, double* pr
   return true;
 }
 
-Rescaled::Rescaled(const Dynamics& dynamics, const NaturalScales& scales)
-    : own(dynamics),
-      z(scales.q),
-      rows(scales.rows),
-      lambda(scales.multipliers),
-      time(scales.time),
-      action(scales.action),
-      functions(*dynamics.functions) {
+Rescaled::Rescaled(const Dynamics& dynamics, const NaturalScales& natural)
+    : own(dynamics), scales(natural), z(natural.q), functions(*dynamics.functions) {
   for (int j = 0; j < dof(); ++j) z.push_back(scales.momentum(j));
   functions.rate = internal::rate;
   functions.jacobian = internal::jacobian;
