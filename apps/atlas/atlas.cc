@@ -15,7 +15,6 @@
 #include "carnot/shooting/solve_field.h"
 #include "carnot/shooting/solve_many.h"
 #include "catalogue/scene_choice.h"
-#include "catalogue/scene_texts.h"
 #include "run/delivery.h"
 #include "run/search_options.h"
 #include "run/subcommands.h"
@@ -76,7 +75,7 @@ Json identity_of(const AtlasCall& call, const Run& run, const ProblemList& list)
   const SearchOptions& search = call.search;
   return {{"version", kVersion},
           {"scene", run.entry->info.name},
-          {"text", is_scene_file(call.run.scene) ? text_of_scene(call.run.scene) : ""},
+          {"text", run.entry->text},
           {"parameters", parameters_json(run)},
           {"method", run.method.name},
           {"seed", run.seed},
@@ -136,7 +135,7 @@ class Atlas {
     run_.samples = parse_integer("--trajectories", call.trajectories, 0, 100000);
     options_ = check(call.search, run_);
     list_ = make_problem_list(call.list, run_);
-    models_ = std::make_unique<Models>(call_.search, call_.run, run_);
+    models_ = std::make_unique<Models>(call_.search, run_);
     if (call_.field) check_field();
     if (options_.all && has_ending(call_.output, ".h5")) {
       refuse(

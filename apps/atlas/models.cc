@@ -4,8 +4,7 @@
 
 namespace carnot::apps {
 
-Models::Models(const SearchOptions& search, const RunOptions& scene, const Run& run)
-    : search_(search), scene_(scene), run_(run) {
+Models::Models(const SearchOptions& search, const Run& run) : search_(search), run_(run) {
   (void)of(run.parameters);
 }
 
@@ -18,7 +17,7 @@ std::shared_ptr<const Model> Models::of(const ParameterValues& parameters) {
   Run run = run_;
   run.parameters = parameters;
   if (parameters != run_.parameters) run.dynamics = run_.make(parameters);
-  model->limits = limits_of(search_, scene_, run);
+  model->limits = limits_of(search_, run);
   model->dynamics = std::move(run.dynamics);
   models_.emplace(parameters, model);
   order_.push_back(parameters);

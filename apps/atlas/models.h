@@ -22,13 +22,12 @@ struct Model {
 class Models {
  public:
   // Keeps references. Throws std::invalid_argument where a limit is wrong.
-  Models(const SearchOptions& search, const RunOptions& scene, const Run& run);
+  Models(const SearchOptions& search, const Run& run);
 
   std::shared_ptr<const Model> of(const ParameterValues& parameters);
 
  private:
   const SearchOptions& search_;
-  const RunOptions& scene_;
   const Run& run_;
   std::mutex mutex_;
   std::map<ParameterValues, std::shared_ptr<const Model>> models_;

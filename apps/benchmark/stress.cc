@@ -222,7 +222,7 @@ int run_stress(const StressOptions& options, const std::vector<std::string>& arg
   const Dynamics& dynamics = course.dynamics;
   course.limits = dynamics.info.limits;
   if (!options.limits.empty() || !options.discs.empty()) {
-    course.limits = choose_limits(options.scene, parameters, options.limits, options.discs);
+    course.limits = choose_limits(entry, parameters, options.limits, options.discs);
   }
   if (dynamics.forced > 0 && !dynamics.on_leaves) {
     refuse("--method", options.method, "searches by RATTLE take too long", "none, for gauss16");

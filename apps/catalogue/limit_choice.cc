@@ -68,11 +68,11 @@ std::string complaint(const std::string& what) {
 
 }  // namespace
 
-std::vector<Limit> choose_limits(const std::string& scene,
+std::vector<Limit> choose_limits(const SceneEntry& entry,
                                  const ParameterValues& parameters,
                                  const std::vector<std::string>& limits,
                                  const std::vector<std::string>& discs) {
-  std::string text = text_of_scene(scene);
+  std::string text = text_of_scene(entry);
   if (!text.empty() && text.back() != '\n') text += '\n';
   TextScene known = scene_from_text(text, "scene", "scene");
   // One at a time, so that a refusal names the one that is wrong.

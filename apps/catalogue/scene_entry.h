@@ -33,6 +33,7 @@ struct SceneEntry {
   int dof = 0;
   int multipliers = 0;
   int holonomic = 0;
+  std::string text;           // of a scene that was read from text; empty: it is one of the program
   bool needs_rattle = false;  // the holonomic constraints do
   std::vector<ParameterInfo> parameters;
   // Whether a method can integrate the scene.

@@ -2,21 +2,21 @@
 
 #include <fmt/format.h>
 
-#include "carnot/load_scene.h"
-#include "catalogue/scene_choice.h"
 #include "text/numbers.h"
 
 namespace carnot::apps {
 
-std::string text_of_scene(const std::string& scene) {
-  if (is_scene_file(scene)) return load_scene(scene).text();
-  (void)find_scene(scene);  // refuses unknown names
+std::string text_of_scene(const SceneEntry& entry) {
+  if (!entry.text.empty()) return entry.text;
   std::vector<std::string_view> names;
   for (const SceneText& known : scene_texts()) {
-    if (known.name == scene) return std::string(known.text);
+    if (known.name == entry.info.name) return std::string(known.text);
     names.push_back(known.name);
   }
-  refuse("--text", scene, "this scene has no text", fmt::format("{}", fmt::join(names, ", ")));
+  refuse("--text",
+         entry.info.name,
+         "this scene has no text",
+         fmt::format("{}", fmt::join(names, ", ")));
 }
 
 std::string new_scene_text(const std::string& name) {

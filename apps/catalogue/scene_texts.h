@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "catalogue/scene_entry.h"
+
 namespace carnot::apps {
 
 struct SceneText {
@@ -15,9 +17,8 @@ struct SceneText {
 // Those of lib/carnot/scenes/*.scene, which are part of the program.
 const std::vector<SceneText>& scene_texts();
 
-// The text of a scene of the program, or of a file that ends in ".scene". Throws
-// std::invalid_argument where there is none.
-std::string text_of_scene(const std::string& scene);
+// The text of a scene. Throws std::invalid_argument where there is none.
+std::string text_of_scene(const SceneEntry& entry);
 
 // A scene to begin with, with comments.
 std::string new_scene_text(const std::string& name);

@@ -12,6 +12,7 @@ namespace carnot::apps {
 SceneEntry text_entry(const TextScene& scene) {
   SceneEntry entry;
   entry.info = scene.info();
+  entry.text = scene.text();
   entry.dof = scene.dof();
   entry.multipliers = scene.multipliers();
   for (const TextParameter& p : scene.parameters()) {

@@ -150,9 +150,11 @@ void parse_steps(const FlowOptions& options, FlowRequest& request) {
 
 }  // namespace
 
-FlowRequest check(const FlowOptions& options) {
+FlowRequest check(const FlowOptions& options) { return check(options, check(options.run)); }
+
+FlowRequest check(const FlowOptions& options, Run run) {
   FlowRequest request;
-  request.run = check(options.run);
+  request.run = std::move(run);
   const SceneEntry& entry = *request.run.entry;
   const auto names = coordinate_names(entry);
   if (options.from.empty()) refuse_missing("--from", vector_accepted(names));

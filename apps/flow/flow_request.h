@@ -35,7 +35,8 @@ struct FlowRequest {
   bool tangent = false;
 };
 
-// Throws std::invalid_argument.
+// Throws std::invalid_argument. The second one takes a run that was made before.
 FlowRequest check(const FlowOptions& options);
+FlowRequest check(const FlowOptions& options, Run run);
 
 }  // namespace carnot::apps

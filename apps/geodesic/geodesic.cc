@@ -1,11 +1,8 @@
 // carnot geodesic: extremals that join two configurations, without a guess.
 #include <memory>
 
-#include "catalogue/scene_choice.h"
 #include "geodesic/geodesic_result.h"
-#include "run/search_options.h"
 #include "run/subcommands.h"
-#include "text/numbers.h"
 #include "text/progress_bar.h"
 
 namespace carnot::apps {
@@ -40,28 +37,6 @@ Examples
 
 Exit status: 0 found (also when fewer than --count exist), 1 nothing converged, 2 bad input,
 130 interrupted.)";
-
-struct GeodesicCall {
-  RunOptions run;
-  std::string from;
-  std::string to;
-  std::string time = "1";
-  std::string guess;
-  SearchOptions search;
-};
-
-GeodesicRequest check(const GeodesicCall& options) {
-  GeodesicRequest request;
-  request.run = check(options.run);
-  request.ends = parse_ends(options.from, options.to, options.time, request.run);
-  request.ends.limits = limits_of(options.search, options.run, request.run);
-  request.options = check(options.search, request.run);
-  if (!options.guess.empty()) {
-    request.options.guess =
-        parse_vector("--guess", options.guess, coordinate_names(*request.run.entry));
-  }
-  return request;
-}
 
 GeodesicReport search(const GeodesicRequest& request) {
   ProgressBar bar("%", 100, request.run.destination.quiet);

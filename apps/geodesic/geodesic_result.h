@@ -5,17 +5,10 @@
 #include <vector>
 
 #include "carnot/shooting/find_geodesics.h"
+#include "geodesic/geodesic_request.h"
 #include "run/delivery.h"
-#include "run/ends.h"
-#include "run/run_options.h"
 
 namespace carnot::apps {
-
-struct GeodesicRequest {
-  Run run;
-  Ends ends;
-  GeodesicOptions options;
-};
 
 Result geodesic_result(const GeodesicRequest& request,
                        const GeodesicReport& report,

@@ -97,15 +97,15 @@ int parse_threads(const std::string& text) {
   return text.empty() ? 0 : static_cast<int>(parse_integer("--threads", text, 1, kMostThreads));
 }
 
-Run check(const RunOptions& options) {
+Run check(const RunOptions& options) { return check(options, find_scene(options.scene)); }
+
+Run check(const RunOptions& options, const SceneEntry& entry) {
   Run run;
-  run.entry = &find_scene(options.scene);
+  run.entry = &entry;
   run.parameters = parse_parameters(*run.entry, options.set);
   const bool as_text = options.searches && is_searched_as_text(*run.entry, options.method);
   run.method = as_text ? *find_method("gauss16") : choose_method(options.method, *run.entry);
-  run.samples = parse_integer("--samples", options.samples, 2, kMostSamples);
-  run.seed = parse_seed("--seed", options.seed);
-  run.threads = parse_threads(options.threads);
+  set_effort(options, run);
   run.no_trajectory = options.no_trajectory;
   run.destination = options.destination;
   run.destination.figure = find_figure(options.destination.figure_name);
@@ -121,6 +121,12 @@ Run check(const RunOptions& options) {
         "--figure", options.destination.figure_name, "this scene has no drawing", "time or energy");
   }
   return run;
+}
+
+void set_effort(const RunOptions& options, Run& run) {
+  run.samples = parse_integer("--samples", options.samples, 2, kMostSamples);
+  run.seed = parse_seed("--seed", options.seed);
+  run.threads = parse_threads(options.threads);
 }
 
 Json result_head(const std::vector<std::string>& arguments) {

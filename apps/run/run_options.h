@@ -69,6 +69,11 @@ int parse_threads(const std::string& text);
 
 // Throws std::invalid_argument.
 Run check(const RunOptions& options);
+// The same of a scene that is known, whatever `options.scene` says. It must outlive the run.
+Run check(const RunOptions& options, const SceneEntry& entry);
+
+// Sets samples, seed and threads of a run. Throws std::invalid_argument.
+void set_effort(const RunOptions& options, Run& run);
 
 // {"version", "arguments"}: how every JSON result begins.
 Json result_head(const std::vector<std::string>& arguments);

@@ -83,11 +83,9 @@ GeodesicOptions check(const SearchOptions& options, const Run& run) {
   return search;
 }
 
-std::vector<Limit> limits_of(const SearchOptions& options,
-                             const RunOptions& scene,
-                             const Run& run) {
+std::vector<Limit> limits_of(const SearchOptions& options, const Run& run) {
   if (options.limits.empty() && options.discs.empty()) return run.dynamics.info.limits;
-  return choose_limits(scene.scene, run.parameters, options.limits, options.discs);
+  return choose_limits(*run.entry, run.parameters, options.limits, options.discs);
 }
 
 }  // namespace carnot::apps

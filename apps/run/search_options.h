@@ -28,6 +28,6 @@ void add_search_options(CLI::App& app, SearchOptions& options);
 GeodesicOptions check(const SearchOptions& options, const Run& run);
 
 // The limits of the scene and those that are asked for.
-std::vector<Limit> limits_of(const SearchOptions& options, const RunOptions& scene, const Run& run);
+std::vector<Limit> limits_of(const SearchOptions& options, const Run& run);
 
 }  // namespace carnot::apps

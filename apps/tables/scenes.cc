@@ -13,6 +13,7 @@
 #include "catalogue/scene_texts.h"
 #include "run/delivery.h"
 #include "run/subcommands.h"
+#include "tables/scene_json.h"
 #include "text/numbers.h"
 #include "text/output_file.h"
 #include "text/text_table.h"
@@ -37,29 +38,6 @@ struct ScenesCall {
   bool text = false;
   Destination destination;
 };
-
-Json scene_json(const SceneEntry& entry) {
-  Json periods = Json::object();
-  for (const Coordinate& coordinate : entry.info.configuration) {
-    if (coordinate.period > 0) periods[coordinate.name] = coordinate.period;
-  }
-  Json parameters = Json::array();
-  for (const ParameterInfo& parameter : entry.parameters) {
-    parameters.push_back({{"name", parameter.name},
-                          {"default", parameter.default_value},
-                          {"unit", parameter.unit},
-                          {"range", parameter.range.text()},
-                          {"meaning", parameter.meaning}});
-  }
-  return {{"name", entry.info.name},
-          {"summary", entry.info.summary},
-          {"kind", entry.info.kind},
-          {"configuration", coordinate_names(entry)},
-          {"periods", std::move(periods)},
-          {"multipliers", entry.multipliers},
-          {"parameters", std::move(parameters)},
-          {"reference", entry.info.reference}};
-}
 
 // One table, its lines under headings: the kinds, in the order of the registry.
 std::string overview() {
@@ -154,7 +132,7 @@ void add_scenes(CLI::App& app, Invocation& invocation) {
     }
     if (options->text) {
       if (options->scene.empty()) refuse_missing("SCENE", "a scene for --text");
-      fmt::print("{}", text_of_scene(options->scene));
+      fmt::print("{}", text_of_scene(find_scene(options->scene)));
       invocation.exit_status = kSuccess;
       return;
     }
