@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -108,6 +109,22 @@ TEST(SolveField, DoesNotDependOnUnits) {
   const Field small = field(1e-3);
   for (std::size_t i = 0; i < one.action.size(); ++i) {
     EXPECT_NEAR(small.action[i] * 1e6, one.action[i], 1e-9 * one.action[i]);
+  }
+}
+
+// Before every layer and block of points the work asks whether to go on.
+TEST(SolveField, StopsWithinASweep) {
+  for (const int patience : {40, 80, 160}) {
+    std::atomic<int> asked{0};
+    FieldOptions options;
+    options.threads = 2;
+    options.progress = [&](double) { return ++asked < patience; };
+    const Field field =
+        solve_field(test::unicycle({0, 0, 0}, {0, 0, 0}),
+                    {axis(0, -2, 0.1, 41), axis(1, -2, 0.1, 41), axis(2, -1, 0.1, 21)},
+                    options);
+    EXPECT_FALSE(field.finished);
+    EXPECT_LT(asked, patience + 32);  // once for each thread and slab that is left
   }
 }
 

@@ -252,7 +252,7 @@ class FieldSolver {
     for (;;) {
       std::vector<long> doubtful;
       for (const long i : sweep_.doubtful()) {
-        if (!tried_.contains(i) && !(in_vain && sweep_[i].known)) doubtful.push_back(i);
+        if (!tried_.contains(i) && !(in_vain && sweep_.points().known(i))) doubtful.push_back(i);
       }
       if (doubtful.empty()) return true;
       std::vector<long> some;
@@ -301,7 +301,7 @@ class FieldSolver {
   // In the units of the scene; infinite where nothing is known.
   [[nodiscard]] double action_of(long i) const {
     double action = std::numeric_limits<double>::infinity();
-    if (sweep_[i].known) action = sweep_[i].action * scales_.action;
+    if (sweep_.points().known(i)) action = sweep_.points().action(i) * scales_.action;
     const auto found = found_.find(i);
     return found == found_.end() ? action : std::min(action, found->second.action);
   }
@@ -324,10 +324,11 @@ class FieldSolver {
     constexpr long kBlock = 256;
     const long blocks = (size + kBlock - 1) / kBlock;
     parallel_for(static_cast<int>(blocks), threads, [&](int block) {
+      if (!go_on()) return;
       for (long i = block * kBlock; i < std::min(size, (block + 1) * kBlock); ++i) {
-        const FieldPoint& point = sweep_[i];
-        if (!point.known) continue;
+        if (!sweep_.points().known(i)) continue;
         field.error[i] = sweep_.verify(i, scales_.q, allowed);
+        const FieldPoint point = sweep_.points().point(i);
         field.action[i] = point.action * scales_.action;
         field.label[i] = labels_[point.origin];
         for (int j = 0; j < n; ++j) field.p0[i * n + j] = point.p0[j] * scales_.momentum(j);

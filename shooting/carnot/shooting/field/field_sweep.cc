@@ -46,7 +46,7 @@ FieldSweep::FieldSweep(const BoundaryValueProblem& problem, const FieldGrid& gri
       grid_(grid),
       n_(problem.dynamics.dof),
       layers_(static_cast<long>(grid.axes.front().values.size())),
-      points_(grid.size()) {
+      points_(grid.size(), n_, grid.axes.size()) {
   layer_ = grid.size() / layers_;
 }
 
@@ -150,7 +150,6 @@ bool FieldSweep::solve(const std::vector<double>& target,
   const std::span<const double> p(point.p0.data(), n);
   point.action =
       problem_.time * problem_.dynamics.evaluate(0, problem_.from, p, velocity, lambda).hamiltonian;
-  point.known = true;
   return std::isfinite(point.action);
 }
 
@@ -163,12 +162,15 @@ bool FieldSweep::seed(long i,
   point.windings = windings;
   point.origin = origin;
   if (!solve(target(i, windings), point, counts_)) return false;
-  if (points_[i].known && !(point.action < (1 - kBetter) * points_[i].action)) return false;
-  put(i, std::move(point));
+  if (points_.known(i) && !(point.action < (1 - kBetter) * points_.action(i))) return false;
+  points_.put(i, point);
   return true;
 }
 
-FieldSweep::Neighbour FieldSweep::neighbour(long i, std::size_t axis, int direction) const {
+FieldSweep::Neighbour FieldSweep::neighbour(long i,
+                                            const FieldPoint& point,
+                                            std::size_t axis,
+                                            int direction) const {
   Neighbour result;
   long stride = 1;
   for (std::size_t a = grid_.axes.size(); --a > axis;) {
@@ -185,7 +187,7 @@ FieldSweep::Neighbour FieldSweep::neighbour(long i, std::size_t axis, int direct
     next -= turns * count;
   }
   result.index = i + (next - at) * stride;
-  result.windings = points_[i].windings;
+  result.windings = point.windings;
   result.dq = SmallVector::Zero(n_);
   const double up = along.values.back() > along.values.front() ? 1 : -1;
   if (turns != 0) result.windings[axis] += static_cast<int>(up) * turns;
@@ -211,18 +213,19 @@ bool FieldSweep::reach(const FieldPoint& from,
   return solve(target, point, counts) && point.sign == from.sign;
 }
 
-void FieldSweep::push(long i, const Neighbour& to, FieldCounts& counts) {
+void FieldSweep::push(const FieldPoint& from, const Neighbour& to, FieldCounts& counts) {
   constexpr double kDoubt = 1e-6;   // relative; the model of a neighbour is not better than that
   constexpr double kSameWay = 0.1;  // of the largest momentum
-  const FieldPoint& from = points_[i];
-  FieldPoint& there = points_[to.index];
   const double promise = promised(from, to.dq);
-  if (there.known) {
-    if (!(promise < (1 - kBetter) * there.action)) return;
+  const bool known = points_.known(to.index);
+  const double action = points_.action(to.index);
+  if (known) {
+    if (!(promise < (1 - kBetter) * action)) return;
     // What differs then is the error of the model, not the way.
-    const SmallVector apart = from.p0 + from.inverse * to.dq - there.p0;
-    const bool near = apart.cwiseAbs().maxCoeff() < kSameWay * there.p0.cwiseAbs().maxCoeff();
-    if (near && to.windings == there.windings) return;
+    const SmallVector there = points_.p0(to.index);
+    const SmallVector apart = from.p0 + from.inverse * to.dq - there;
+    const bool near = apart.cwiseAbs().maxCoeff() < kSameWay * there.cwiseAbs().maxCoeff();
+    if (near && to.windings == points_.windings(to.index)) return;
   }
   ++counts.pushes;
   FieldPoint point;
@@ -239,41 +242,34 @@ void FieldSweep::push(long i, const Neighbour& to, FieldCounts& counts) {
     reached = reach(from, middle, step, half, counts) && reach(half, end, step, point, counts);
   }
   if (!reached) {
-    if (promise < (1 - kDoubt) * there.action) there.doubted = true;
+    if (promise < (1 - kDoubt) * action) points_.doubt(to.index);
     return;
   }
-  if (there.known && !(point.action < (1 - kBetter) * there.action)) return;
+  if (known && !(point.action < (1 - kBetter) * action)) return;
   ++counts.improved;
-  put(to.index, std::move(point));
-}
-
-void FieldSweep::put(long i, FieldPoint point) {
-  point.version = points_[i].version + 1;
-  point.told = points_[i].told;
-  points_[i] = std::move(point);
-}
-
-bool FieldSweep::has_news(long i, int whom) {
-  FieldPoint& point = points_[i];
-  if (point.told[whom] == point.version) return false;
-  point.told[whom] = point.version;
-  return true;
+  points_.put(to.index, point);
 }
 
 void FieldSweep::push_all(long i, long first, long last, FieldCounts& counts) {
-  if (!has_news(i, 0)) return;
+  if (!points_.has_news(i, 0)) return;
+  const FieldPoint from = points_.point(i);
   for (std::size_t axis = 0; axis < grid_.axes.size(); ++axis) {
     for (const int direction : {-1, 1}) {
-      const Neighbour to = neighbour(i, axis, direction);
-      if (to.index >= first && to.index < last) push(i, to, counts);
+      const Neighbour to = neighbour(i, from, axis, direction);
+      if (to.index >= first && to.index < last) push(from, to, counts);
     }
   }
 }
 
-void FieldSweep::sweep_slab(long first, long last, bool forward, FieldCounts& counts) {
+void FieldSweep::sweep_slab(long first,
+                            long last,
+                            bool forward,
+                            const std::function<bool()>& goes_on,
+                            FieldCounts& counts) {
   const long begin = first * layer_;
   const long end = last * layer_;
   for (long k = begin; k < end; ++k) {
+    if (k % layer_ == 0 && !goes_on()) return;
     push_all(forward ? k : begin + end - 1 - k, begin, end, counts);
   }
 }
@@ -283,9 +279,10 @@ void FieldSweep::cross(long layer, FieldCounts& counts) {
   for (const int direction : {1, -1}) {
     const long from = direction > 0 ? layer : (layer + 1) % layers_;
     for (long k = from * layer_; k < (from + 1) * layer_; ++k) {
-      if (!has_news(k, direction > 0 ? 1 : 2)) continue;
-      const Neighbour to = neighbour(k, 0, direction);
-      if (to.index >= 0) push(k, to, counts);
+      if (!points_.has_news(k, direction > 0 ? 1 : 2)) continue;
+      const FieldPoint point = points_.point(k);
+      const Neighbour to = neighbour(k, point, 0, direction);
+      if (to.index >= 0) push(point, to, counts);
     }
   }
 }
@@ -296,11 +293,14 @@ bool FieldSweep::spread(int threads, const Progress& progress) {
   const long slabs = std::clamp(layers_ / 2, 1L, kSlabs);
   const auto begin = [&](long slab) { return slab * layers_ / slabs; };
   int quiet = 0;  // sweeps without an improvement
+  double known = 0;
+  const auto goes_on = [&] { return !progress || progress(known); };
   for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
     std::vector<FieldCounts> counts(slabs);
     parallel_for(static_cast<int>(slabs), threads, [&](int slab) {
-      sweep_slab(begin(slab), begin(slab + 1), sweep % 2 == 0, counts[slab]);
+      sweep_slab(begin(slab), begin(slab + 1), sweep % 2 == 0, goes_on, counts[slab]);
     });
+    if (!goes_on()) return false;
     // Borders of every second pair of slabs, then the others; around, the last and the first.
     for (const long parity : {0L, 1L}) {
       parallel_for(static_cast<int>(slabs), threads, [&](int slab) {
@@ -316,25 +316,23 @@ bool FieldSweep::spread(int threads, const Progress& progress) {
     // Who improved was told to its neighbours in this sweep, or will be in the next one.
     quiet = improved == 0 ? quiet + 1 : 0;
     if (quiet == 2) return true;
-    const auto known = std::count_if(
-        points_.begin(), points_.end(), [](const FieldPoint& point) { return point.known; });
-    if (progress && !progress(static_cast<double>(known) / static_cast<double>(points_.size()))) {
-      return false;
-    }
+    long count = 0;
+    for (long i = 0; i < points_.size(); ++i) count += points_.known(i) ? 1 : 0;
+    known = static_cast<double>(count) / static_cast<double>(points_.size());
   }
   return true;
 }
 
 std::vector<long> FieldSweep::doubtful() const {
   std::vector<long> list;
-  for (long i = 0; i < static_cast<long>(points_.size()); ++i) {
-    if (!points_[i].known || points_[i].doubted) list.push_back(i);
+  for (long i = 0; i < points_.size(); ++i) {
+    if (!points_.known(i) || points_.doubted(i)) list.push_back(i);
   }
   return list;
 }
 
 double FieldSweep::error_of(long i, const std::vector<double>& units, int factor) const {
-  const FieldPoint& point = points_[i];
+  const FieldPoint point = points_.point(i);
   std::vector<double> z = problem_.from;
   z.insert(z.end(), point.p0.data(), point.p0.data() + n_);
   const StepPlan plan = StepPlan::equal(0, problem_.time, 2 * factor * steps_for(point.p0));
@@ -350,10 +348,10 @@ double FieldSweep::verify(long i, const std::vector<double>& units, double allow
   double error = error_of(i, units, 1);
   FieldCounts unused;
   for (int factor = 2; factor <= kMostSteps && !(error <= allowed); factor *= 2) {
-    FieldPoint point = points_[i];
+    FieldPoint point = points_.point(i);
     if (!solve(target(i, point.windings), point, unused, factor)) continue;
-    if (point.sign != points_[i].sign) break;
-    points_[i] = std::move(point);
+    if (point.sign != points_.sign(i)) break;
+    points_.replace(i, point);
     error = error_of(i, units, factor);
   }
   return error;

@@ -15,13 +15,11 @@
 // does not depend on the number of threads either.
 #pragma once
 
-#include <Eigen/Core>
-#include <array>
-#include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "carnot/shooting/boundary_value_problem.h"
-#include "carnot/shooting/linear/dense.h"
+#include "carnot/shooting/field/field_store.h"
 
 namespace carnot::internal {
 
@@ -41,24 +39,6 @@ struct FieldGrid {
   [[nodiscard]] std::vector<double> target(long i) const;
 };
 
-// What is known of a point. In the natural scales of the problem (natural_scales.h).
-struct FieldPoint {
-  bool known = false;
-  std::int8_t sign = 0;  // of det J
-  bool doubted = false;  // a neighbour promised less since, and Newton's method failed
-  int origin = -1;       // the seed that it comes from
-  // How often it was improved, and which of these its neighbours have been told: those of its slab,
-  // and those across a border, up and down.
-  int version = 0;
-  std::array<int, 3> told{};
-  double action = 0;
-  SmallVector p0;
-  SmallVector p1;  // p(T)
-  SmallMatrix inverse;
-  SmallMatrix slope;          // S
-  std::vector<int> windings;  // whole periods of the axes, added to the target
-};
-
 struct FieldCounts {
   long pushes = 0;    // that promised less
   long improved = 0;  // of these
@@ -71,13 +51,14 @@ class FieldSweep {
   // Of a scene without drift or potential, whose action is H T. Keeps references.
   FieldSweep(const BoundaryValueProblem& problem, const FieldGrid& grid);
 
-  [[nodiscard]] const FieldPoint& operator[](long i) const { return points_[i]; }
+  [[nodiscard]] const FieldStore& points() const { return points_; }
   [[nodiscard]] const FieldCounts& counts() const { return counts_; }
   [[nodiscard]] std::vector<double> target(long i, const std::vector<int>& windings) const;
   // Takes an extremal to point i that was found otherwise, where it is better. False where it
   // does not lead there, or is no better.
   bool seed(long i, const std::vector<double>& p0, const std::vector<int>& windings, int origin);
-  // Sweeps until nothing changes. False when stopped.
+  // Sweeps until nothing changes. False when stopped; `progress` is told by all threads, the
+  // fraction that was known after the last sweep.
   bool spread(int threads, const Progress& progress);
   // Points that neighbours promised less than they have, in vain, or which have nothing.
   [[nodiscard]] std::vector<long> doubtful() const;
@@ -93,7 +74,10 @@ class FieldSweep {
     SmallVector dq;
   };
   // The neighbour along an axis, one step up or down; index -1 where there is none.
-  [[nodiscard]] Neighbour neighbour(long i, std::size_t axis, int direction) const;
+  [[nodiscard]] Neighbour neighbour(long i,
+                                    const FieldPoint& point,
+                                    std::size_t axis,
+                                    int direction) const;
   [[nodiscard]] double promised(const FieldPoint& from, const SmallVector& dq) const;
   // Steps of the method that are enough for most momenta of this size.
   [[nodiscard]] long steps_for(const SmallVector& p0) const;
@@ -115,13 +99,16 @@ class FieldSweep {
              const SmallVector& dq,
              FieldPoint& point,
              FieldCounts& counts) const;
-  void push(long i, const Neighbour& to, FieldCounts& counts);
+  // Tells a neighbour what `from`, point i, promises it.
+  void push(const FieldPoint& from, const Neighbour& to, FieldCounts& counts);
   void push_all(long i, long first, long last, FieldCounts& counts);
-  void put(long i, FieldPoint point);
-  // Whether there is news of point i for these neighbours, who are told now.
-  bool has_news(long i, int whom);
-  // One sweep over the layers first to last, forward or back.
-  void sweep_slab(long first, long last, bool forward, FieldCounts& counts);
+  // One sweep over the layers first to last, forward or back. It ends early where `goes_on` says
+  // so, which is asked before every layer.
+  void sweep_slab(long first,
+                  long last,
+                  bool forward,
+                  const std::function<bool()>& goes_on,
+                  FieldCounts& counts);
   void cross(long layer, FieldCounts& counts);
 
   const BoundaryValueProblem& problem_;
@@ -129,7 +116,7 @@ class FieldSweep {
   int n_;
   long layer_;  // points of a layer across the first axis
   long layers_;
-  std::vector<FieldPoint> points_;
+  FieldStore points_;
   FieldCounts counts_;
 };
 

@@ -1,0 +1,75 @@
+// What is known of the points of a field, in little memory.
+//
+// A point takes 8 (2n + n^2 + n(n+1)/2) bytes of numbers and 24 + 2a bytes besides, with a axes:
+// 198 for three coordinates, 304 for four. Different points may be read and written by different
+// threads.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "carnot/shooting/linear/dense.h"
+
+namespace carnot::internal {
+
+// What is known of a point. In the natural scales of the problem (natural_scales.h).
+struct FieldPoint {
+  std::int8_t sign = 0;  // of det J
+  int origin = -1;       // the seed that it comes from
+  double action = 0;
+  SmallVector p0;
+  SmallVector p1;  // p(T)
+  SmallMatrix inverse;
+  SmallMatrix slope;          // S, which is symmetric
+  std::vector<int> windings;  // whole periods of the axes, added to the target
+};
+
+class FieldStore {
+ public:
+  // Of so many points with n coordinates, on a grid of so many axes.
+  FieldStore(long points, int n, std::size_t axes);
+
+  [[nodiscard]] long size() const { return static_cast<long>(states_.size()); }
+  [[nodiscard]] bool known(long i) const { return states_[i].known; }
+  [[nodiscard]] double action(long i) const { return states_[i].action; }
+  [[nodiscard]] std::int8_t sign(long i) const { return states_[i].sign; }
+  // Whether a neighbour has promised less since, and Newton's method failed.
+  [[nodiscard]] bool doubted(long i) const { return states_[i].doubted; }
+  void doubt(long i) { states_[i].doubted = true; }
+
+  // Point i, which is known.
+  [[nodiscard]] FieldPoint point(long i) const;
+  [[nodiscard]] SmallVector p0(long i) const;
+  [[nodiscard]] std::vector<int> windings(long i) const;
+  // Makes it known; that is news for its neighbours.
+  void put(long i, const FieldPoint& point);
+  // The same without news: the point is the same, more exactly.
+  void replace(long i, const FieldPoint& point);
+  // Whether there is news of point i for these neighbours, who are told now: 0 those of its slab,
+  // 1 and 2 those across a border, up and down.
+  bool has_news(long i, int whom);
+
+ private:
+  struct State {
+    double action = 0;
+    int origin = -1;
+    // How often it was improved, and which of these its neighbours have been told.
+    std::uint16_t version = 0;
+    std::array<std::uint16_t, 3> told{};
+    std::int8_t sign = 0;
+    bool known = false;
+    bool doubted = false;
+  };
+
+  [[nodiscard]] const double* numbers(long i) const { return &numbers_[i * width_]; }
+
+  int n_;
+  std::size_t axes_;
+  std::size_t width_;  // numbers of a point
+  std::vector<State> states_;
+  std::vector<double> numbers_;  // p(0), p(T), the inverse, the lower triangle of S
+  std::vector<std::int16_t> windings_;
+};
+
+}  // namespace carnot::internal

@@ -1,0 +1,67 @@
+#include "carnot/shooting/field/field_store.h"
+
+#include <gtest/gtest.h>
+
+namespace carnot::internal::field_store_test {
+namespace {
+
+FieldPoint some_point(double seed) {
+  FieldPoint point;
+  point.sign = -1;
+  point.origin = 7;
+  point.action = seed;
+  point.p0 = Eigen::Vector3d(seed, 2, 3);
+  point.p1 = Eigen::Vector3d(4, seed, 6);
+  point.inverse = (Eigen::Matrix3d() << 1, 2, 3, 4, 5, 6, 7, 8, seed).finished();
+  point.slope = (Eigen::Matrix3d() << 1, 2, 3, 2, 5, 6, 3, 6, seed).finished();
+  point.windings = {-1, 300};
+  return point;
+}
+
+TEST(FieldStore, KeepsWhatIsPut) {
+  FieldStore store(5, 3, 2);
+  EXPECT_EQ(store.size(), 5);
+  EXPECT_FALSE(store.known(3));
+  store.put(3, some_point(0.5));
+  store.put(4, some_point(0.25));
+  EXPECT_TRUE(store.known(3));
+  EXPECT_FALSE(store.known(2));
+  const FieldPoint point = store.point(3);
+  const FieldPoint expected = some_point(0.5);
+  EXPECT_EQ(point.sign, expected.sign);
+  EXPECT_EQ(point.origin, expected.origin);
+  EXPECT_EQ(point.action, expected.action);
+  EXPECT_EQ(point.p0, expected.p0);
+  EXPECT_EQ(point.p1, expected.p1);
+  EXPECT_EQ(point.inverse, expected.inverse);
+  EXPECT_EQ(point.slope, expected.slope);
+  EXPECT_EQ(point.windings, expected.windings);
+  EXPECT_EQ(store.p0(3), expected.p0);
+  EXPECT_EQ(store.windings(3), expected.windings);
+}
+
+TEST(FieldStore, TellsNewsOnceToEach) {
+  FieldStore store(1, 3, 2);
+  EXPECT_FALSE(store.has_news(0, 0));
+  store.put(0, some_point(1));
+  EXPECT_TRUE(store.has_news(0, 0));
+  EXPECT_FALSE(store.has_news(0, 0));
+  EXPECT_TRUE(store.has_news(0, 2));
+  store.replace(0, some_point(2));
+  EXPECT_EQ(store.action(0), 2);
+  EXPECT_FALSE(store.has_news(0, 0));
+  store.put(0, some_point(1));
+  EXPECT_TRUE(store.has_news(0, 0));
+}
+
+TEST(FieldStore, DoubtsEndWithAnImprovement) {
+  FieldStore store(1, 3, 2);
+  store.put(0, some_point(2));
+  store.doubt(0);
+  EXPECT_TRUE(store.doubted(0));
+  store.put(0, some_point(1));
+  EXPECT_FALSE(store.doubted(0));
+}
+
+}  // namespace
+}  // namespace carnot::internal::field_store_test
