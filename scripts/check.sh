@@ -15,7 +15,7 @@ for preset in "$@"; do
   fi
 done
 
-lists=("$root"/scripts/packages{,-test,-docs}.txt)
+lists=("$root"/scripts/packages{,-test,-docs,-python}.txt)
 [[ " $* " != *" tidy "* ]] || lists+=("$root/scripts/packages-check.txt")
 install_packages "${lists[@]}"
 exec 9>&-  # the lock of prepare.sh: nothing here builds in build/release
@@ -43,7 +43,11 @@ fixed_addresses() {
 
 # Configures, builds all that builds, and runs the tests; tidy has none, its build is the check.
 check() {
-  step configure cmake --preset "$preset" -D CARNOT_BUILD_APPS=ON -D CARNOT_BUILD_TESTS=ON &&
+  # Python does not run with the thread sanitizer.
+  local python=ON
+  [ "$preset" != tsan ] || python=OFF
+  step configure cmake --preset "$preset" -D CARNOT_BUILD_APPS=ON -D CARNOT_BUILD_TESTS=ON \
+    -D "CARNOT_PYTHON=$python" &&
     step build cmake --build --preset "$preset" --parallel "$(job_count)" -- -k 0 || return
   [ "$preset" != tidy ] || return 0
   step test fixed_addresses ctest --preset "$preset" --parallel "$(nproc)"

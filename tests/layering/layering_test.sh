@@ -1,5 +1,6 @@
 #!/bin/sh
-# The layers, lib <- shooting <- apps and lib <- plots <- apps, and the order of the rooms in each.
+# The layers, lib <- shooting <- apps <- python and lib <- plots <- apps, and the order of the rooms
+# in each.
 # usage: layering_test.sh PROJECT_FOLDER
 #
 # Whatever a folder includes must be on the list of its layer, and in a room of its own floor or of
@@ -85,6 +86,9 @@ broken() {
   [ ! -d apps/benchmark/peers ] || only "$std|$peers|${own}$shooting|$scenes" apps/benchmark/peers
   [ ! -d apps/benchmark/micro ] || only "$std|$peers|fmt/[a-z]+\.h|${own}$shooting|$scenes" apps/benchmark/micro
   [ ! -d apps/ompl ] || only "$std|$ompl|$shooting|$scenes|carnot/plots/[a-z_]+\.h" apps/ompl
+  rooms='(verify|tables|flow|geodesic|continue|catalogue|run|text)/[a-z_]+\.h'
+  [ ! -d python ] ||
+    only "$std|pybind11/[a-z0-9]+\.h|fmt/format\.h|$rooms|[a-z]+\.h|carnot/[a-z0-9_/]+\.h" python
   umbrellas lib shooting plots
 }
 
@@ -153,6 +157,9 @@ must_fail apps/geodesic/bad.cc '<gnuplot-iostream.h>'
 must_fail apps/geodesic/bad.cc '<ceres/ceres.h>'
 must_fail apps/geodesic/bad.cc '<nlopt.h>'
 must_fail apps/geodesic/bad.cc '<gsl/gsl_odeiv2.h>'
+must_fail apps/geodesic/bad.cc '<pybind11/pybind11.h>'
+must_fail python/binding/bad.cc '"atlas/journal.h"'
+must_fail python/binding/bad.cc '<nlohmann/json.hpp>'
 mkdir -p apps/benchmark/peers
 must_fail apps/benchmark/peers/bad.cc '<fmt/format.h>'
 printf '%s\n' '#pragma once' '// Everything.' '#include "carnot/flow/flow.h"' >lib/carnot/dynamics.h

@@ -1,0 +1,147 @@
+"""Ctrl-C, progress and other threads. Scripts run in processes of their own."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import carnot
+
+# Searches for minutes, if it is let.
+LONG = "carnot.scene('trailer3').geodesics([0]*6, [5, 9, 1, 1, 1, 1], all=True, starts=100000)"
+ENDLESS = """
+import sys, time, carnot
+print("begun", flush=True)
+began = time.monotonic()
+try:
+    LONG
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+report = carnot.scene("unicycle").geodesics([0, 0, 0], [0, 1, 0])
+print(report.best().label, flush=True)
+""".replace("LONG", LONG)
+
+
+def begun(script):
+    process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True)
+    assert process.stdout.readline() == "begun\n"
+    time.sleep(0.5)
+    return process
+
+
+def test_ctrl_c_is_heard_at_once_and_breaks_nothing():
+    process = begun(ENDLESS)
+    process.send_signal(signal.SIGINT)
+    out, _ = process.communicate(timeout=60)
+    assert out.split() == ["interrupted", "locally-minimal"]
+    assert process.returncode == 0
+
+
+def test_ctrl_c_ends_a_script_as_python_does():
+    script = f"import carnot\nprint('begun', flush=True)\n{LONG}"
+    process = begun(script)
+    process.send_signal(signal.SIGINT)
+    assert process.wait(timeout=60) == -signal.SIGINT
+
+
+def test_exit_while_a_thread_searches():
+    script = f"import carnot, threading\ndef work():\n    {LONG}\n"
+    script += "threading.Thread(target=work, daemon=True).start()\nprint('begun', flush=True)\n"
+    process = begun(script + "import time; time.sleep(0.3)")
+    assert process.wait(timeout=60) == 0
+
+
+@pytest.mark.parametrize("call", ["geodesics", "many", "field"])
+def test_callback_stops_the_work(call, unicycle):
+    told = []
+
+    def stop(fraction):
+        told.append(fraction)
+        return False
+
+    goals = np.random.default_rng(0).uniform(-9, 9, (5000, 3))
+    grid = np.linspace(-2, 2, 101)
+    if call == "geodesics":
+        trailers = carnot.scene("trailer3")
+        report = trailers.geodesics([0] * 6, [5, 9, 1, 1, 1, 1], starts=100000, progress=stop)
+        assert report.status == "interrupted"
+    elif call == "many":
+        answers = unicycle.solve_many(np.zeros(3), goals, progress=stop)
+        assert not answers["solved"].all()
+    else:
+        field = unicycle.distance_field({"x": grid, "y": grid, "theta": grid}, progress=stop)
+        assert not field.finished
+    assert told
+    assert all(0 <= fraction <= 1 for fraction in told)
+
+
+def test_what_a_callback_raises_is_raised(unicycle):
+    def fail(fraction):
+        raise RuntimeError("mine")
+
+    goals = np.random.default_rng(0).uniform(-9, 9, (5000, 3))
+    with pytest.raises(RuntimeError, match="mine"):
+        unicycle.solve_many(np.zeros(3), goals, progress=fail)
+
+
+def test_progress_grows(unicycle):
+    told = []
+    goals = np.random.default_rng(0).uniform(-1, 1, (300, 3))
+    unicycle.solve_many(np.zeros(3), goals, progress=told.append)
+    assert told == sorted(told)
+    assert unicycle.solve_many(np.zeros(3), goals[:2], progress=True)["solved"].all()
+
+
+def test_other_threads_run_meanwhile(unicycle):
+    counted = 0
+    done = threading.Event()
+
+    def count():
+        nonlocal counted
+        while not done.is_set():
+            counted += 1
+            time.sleep(0.001)
+
+    other = threading.Thread(target=count)
+    other.start()
+    goals = np.random.default_rng(0).uniform(-3, 3, (100, 3))
+    unicycle.solve_many(np.zeros(3), goals, threads=1)
+    done.set()
+    other.join()
+    assert counted > 10
+
+
+def test_searches_in_two_threads_at_once(unicycle):
+    goals = np.random.default_rng(0).uniform(-1, 1, (6, 3))
+    alone = [unicycle.geodesics([0, 0, 0], goal).best().action for goal in goals]
+    found = {}
+
+    def search(i):
+        found[i] = unicycle.geodesics([0, 0, 0], goals[i], threads=1).best().action
+
+    threads = [threading.Thread(target=search, args=(i,)) for i in range(len(goals))]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert [found[i] for i in range(len(goals))] == alone
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="only where processes fork")
+def test_forked_processes_search(unicycle):
+    import multiprocessing
+
+    unicycle.geodesics([0, 0, 0], [0, 1, 0])
+    with multiprocessing.get_context("fork").Pool(2) as pool:
+        actions = pool.map(_action, [(unicycle, [0, 1, 0]), (unicycle, [1, 1, 0])])
+    assert actions == [_action((unicycle, goal)) for goal in ([0, 1, 0], [1, 1, 0])]
+
+
+def _action(question):
+    scene, goal = question
+    return scene.geodesics([0, 0, 0], goal).best().action
