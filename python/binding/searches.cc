@@ -23,6 +23,9 @@ py::tuple geodesics(const Model& model, const Texts& options, const py::object& 
   take(options, "guess", call.guess);
   call.search = model.search_options(options);
   GeodesicRequest request = check(call, model.searching(options));
+  bool without = false;
+  take(options, "no-trajectory", without);
+  if (without) request.options.samples = 0;
   request.run.no_trajectory = true;  // they go to Python as arrays
   GeodesicReport report =
       answer_in_background<GeodesicReport>(callback, [request](const Progress& progress) {

@@ -22,6 +22,16 @@ using namespace apps;
 
 using Handle = std::shared_ptr<const SteeringFunction>;
 
+// What the search in this thread is told by the call that it is for.
+thread_local const Progress* asking = nullptr;
+
+struct Asking {
+  explicit Asking(const Progress& progress) { asking = &progress; }
+  ~Asking() { asking = nullptr; }
+  Asking(const Asking&) = delete;
+  Asking& operator=(const Asking&) = delete;
+};
+
 Handle make(const std::shared_ptr<Model>& model,
             const Texts& options,
             bool mod_angles,
@@ -44,6 +54,7 @@ Handle make(const std::shared_ptr<Model>& model,
   steering.seed = search.seed;
   steering.threads = std::max(1, run.threads);
   steering.memory = static_cast<std::size_t>(parse_integer("--memory", memory, 0, 1000000000));
+  steering.goes_on = [] { return asking == nullptr || (*asking)(0); };
   return std::make_shared<const SteeringFunction>(run.dynamics, steering);
 }
 
@@ -70,8 +81,9 @@ py::list ways(
   const std::vector<double> to = vector_of(to_in, "goal", n);
   if (samples < 2) throw std::invalid_argument("samples: less than 2");
   const auto found =
-      answer_in_background<std::vector<Way>>(py::none(), [=](const Progress& /*progress*/) {
+      answer_in_background<std::vector<Way>>(py::none(), [=](const Progress& progress) {
         std::vector<Way> list;
+        const Asking call(progress);
         if (count == 1) {
           list.push_back(sampled(self->steer(from, to), n, samples));
         } else {
@@ -116,6 +128,7 @@ py::array_t<double> distances(const Handle& self,
           return std::span(of).subspan(static_cast<std::size_t>(i) * n, n);
         };
         parallel_for(rows, thread_count(threads), [&](int i) {
+          const Asking call(progress);
           if (progress(0)) list[i] = self->distance(row(from, i), row(to, i));
         });
         return list;

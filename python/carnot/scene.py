@@ -201,7 +201,7 @@ class Scene:
         12.5663706144
 
         A configuration has n numbers; None is a coordinate that is free. Options are those of
-        `carnot geodesic`. `progress` is a function of the fraction done, which stops the search
+        `carnot geodesic`, but that 0 `samples` leave trajectories out. `progress` is a function of the fraction done, which stops the search
         where it returns False, or True for a bar. Ctrl-C raises KeyboardInterrupt within a few
         hundredths of a second.
         """
@@ -225,6 +225,9 @@ class Scene:
         options["to"] = texts.vector_text("--to", goal)
         if guess is not None:
             options["guess"] = texts.vector_text("--guess", guess)
+        if samples == 0:
+            del options["samples"]
+            options["no-trajectory"] = "1"
         with watched(progress) as tell:
             found, trajectories = self._model.geodesics(options, tell)
         return report_of(self, json.loads(found), trajectories)

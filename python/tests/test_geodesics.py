@@ -95,6 +95,13 @@ def test_arrays_have_the_shapes_that_are_said(parking):
     assert all(g.q.dtype == np.float64 for g in parking)
 
 
+def test_without_samples(car, parking):
+    bare = car.geodesics([0, 0, 0, 0], [0, 1, 0, 0], samples=0).best()
+    assert bare.q.shape == bare.p.shape == (0, 4)
+    assert bare.t.shape == (0,)
+    assert bare.p0.tolist() == parking.best().p0.tolist()
+
+
 def test_report_is_a_sequence_and_prints(parking):
     assert len(parking) == 2
     assert parking

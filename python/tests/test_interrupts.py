@@ -49,6 +49,24 @@ def test_ctrl_c_ends_a_script_as_python_does():
     assert process.wait(timeout=60) == -signal.SIGINT
 
 
+def test_ctrl_c_stops_steering_and_keeps_nothing_of_it():
+    script = """
+import carnot, numpy
+steer = carnot.scene("trailer3").steering()
+near, far = [0.5, 0, 0, 0, 0, 0], numpy.random.default_rng(0).uniform(-20, 20, (1000, 6))
+print("begun", flush=True)
+try:
+    steer.distance([0] * 6, far)
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+print(steer.distance([0] * 6, near), flush=True)
+"""
+    process = begun(script)
+    process.send_signal(signal.SIGINT)
+    out, _ = process.communicate(timeout=60)
+    assert out.split() == ["interrupted", "0.5"]
+
+
 def test_exit_while_a_thread_searches():
     script = f"import carnot, threading\ndef work():\n    {LONG}\n"
     script += "threading.Thread(target=work, daemon=True).start()\nprint('begun', flush=True)\n"

@@ -68,6 +68,22 @@ void expect_continuous(const SteeringFunction& steer,
   }
 }
 
+TEST(SteeringFunction, StopsAndKeepsNothingOfThat) {
+  bool stop = true;
+  SteeringOptions options;
+  options.goes_on = [&stop] { return !stop; };
+  const SteeringFunction steer(unicycle_dynamics(), options);
+  const std::vector<double> a{0, 0, 0};
+  const std::vector<double> b{0.3, 1, 0.4};
+  const Steering stopped = steer.steer(a, b);
+  EXPECT_FALSE(stopped.found());
+  EXPECT_EQ(stopped.reason(), Reason::kInterrupted);
+  EXPECT_TRUE(std::isinf(steer.distance(a, b)));
+  stop = false;
+  EXPECT_TRUE(steer.steer(a, b).found());
+  EXPECT_EQ(steer.distance(a, b), unicycle().distance(a, b));
+}
+
 TEST(SteeringFunctionTest, IdenticalPosesAreAtDistanceZero) {
   for (const Pose& a : {Pose{0, 0, 0}, Pose{3, -4, 2.5}, Pose{4.5e9, -3.5e8, 100}}) {
     EXPECT_EQ(unicycle().distance(a, a), 0);

@@ -50,7 +50,7 @@ class SteeringFunction::Implementation {
     SteeringMemory::Value known = memory_.find(question.ends);
     if (known != nullptr) return known;
     SteeringMemory::Value found = search_->answers(question, 1).front();
-    memory_.insert(question.ends, found);
+    if (found->reason != Reason::kInterrupted) memory_.insert(question.ends, found);
     return found;
   }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,9 @@ struct SteeringOptions {
   std::uint64_t seed = 0;
   int threads = 1;            // of one search
   std::size_t memory = 4096;  // answers kept, of about 4 KB each; the oldest are dropped
+  // Asked now and then by every search, in its thread, whether to go on; empty: always. A search
+  // that is stopped fails with Reason::kInterrupted, and is not kept.
+  std::function<bool()> goes_on;
 };
 
 }  // namespace carnot

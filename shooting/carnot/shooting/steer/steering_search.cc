@@ -60,6 +60,9 @@ GeodesicOptions SteeringSearch::options_of_search(int count) const {
   search.seed = options_.seed;
   search.threads = options_.threads;
   search.samples = kSteeringSamples;
+  if (options_.goes_on) {
+    search.progress = [this](double /*fraction*/) { return options_.goes_on(); };
+  }
   return search;
 }
 
@@ -127,6 +130,11 @@ std::vector<Geodesic> SteeringSearch::solve(const BoundaryValueProblem& problem,
                                             SteeringAnswer& failure) {
   try {
     GeodesicReport report = find_geodesics(problem, options);
+    if (report.status == GeodesicStatus::kInterrupted) {
+      failure.reason = report.reason;
+      failure.message = report.message;
+      return {};
+    }
     if (failure.reason == Reason::kNone) {
       failure.reason = report.reason;
       failure.message = report.message;
@@ -162,6 +170,10 @@ std::vector<std::shared_ptr<const SteeringAnswer>> SteeringSearch::answers(
     if (found.empty() && options.starts > 0 && &image == &images.front()) {
       options.starts = 0;
       found = solve(problem, options, failure);
+    }
+    if (failure.reason == Reason::kInterrupted) {  // what was found before may not be the least
+      list.clear();
+      break;
     }
     for (Geodesic& geodesic : found) {
       list.push_back(answer_of(std::move(geodesic)));
