@@ -14,6 +14,7 @@
 #include "run/subcommands.h"
 #include "text/arguments.h"
 #include "text/interrupt.h"
+#include "text/launcher.h"
 #include "text/numbers.h"
 #include "text/version.h"
 
@@ -138,16 +139,16 @@ int run_program(const std::vector<std::string>& arguments,
     status = run(arguments, subcommands);
   } catch (const language::TextError& error) {
     // FILE:LINE:COLUMN, as editors read it, with the line and a caret below.
-    std::cerr << error.what() << '\n';
+    if (speaks_for_all()) std::cerr << error.what() << '\n';
     return kBadInput;
   } catch (const std::invalid_argument& error) {
-    complain(error.what());
+    if (speaks_for_all()) complain(error.what());
     return kBadInput;
   } catch (const std::exception& error) {
     if (!interrupted()) complain(error.what());
   }
   if (!interrupted() || status == kSuccess) return status;
-  complain("interrupted");
+  if (speaks_for_all()) complain("interrupted");
   return kInterrupted;
 }
 

@@ -2,22 +2,29 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <functional>
+#include <future>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <utility>
 
 #include "atlas/atlas_output.h"
 #include "atlas/atlas_record.h"
+#include "atlas/chunk_list.h"
 #include "atlas/journal.h"
 #include "atlas/models.h"
 #include "atlas/problem_list.h"
+#include "atlas/ranks.h"
 #include "carnot/shooting/solve_field.h"
 #include "carnot/shooting/solve_many.h"
 #include "catalogue/scene_choice.h"
 #include "run/delivery.h"
 #include "run/search_options.h"
 #include "run/subcommands.h"
+#include "text/interrupt.h"
 #include "text/numbers.h"
 #include "text/output_file.h"
 #include "text/progress_bar.h"
@@ -41,6 +48,8 @@ which --no-times leaves out.
 With --field the points of a grid are reached from their neighbours by Newton's method, and only some
 are searched: thousands a second on each core. It keeps the geodesic of least action, says how many of
 --check points had less when they were searched again, and is not resumed.
+In a build with CARNOT_MPI=ON the same call works on many ranks, under mpirun or srun; a field is
+solved by one of them. docs/clusters.md says how, and what to expect.
 
 Examples
   carnot atlas vehicle --problems poses.csv --output parked.csv
@@ -143,20 +152,21 @@ class Atlas {
     }
   }
 
-  int work() { return call_.field ? work_on_field() : work_on_list(); }
+  int work() {
+    if (!call_.field) return work_on_list();
+    return ranks_.leads() ? work_on_field() : kSuccess;
+  }
 
  private:
   int work_on_list() {
     const auto began = std::chrono::steady_clock::now();
     const long chunk = chunk_of(list_->size());
     const long chunks = (list_->size() + chunk - 1) / chunk;
-    Journal journal(
-        call_.output + ".journal", identity_of(call_, run_, *list_), chunks, call_.resume);
-    long resumed = 0;
-    for (long k = 0; k < chunks; ++k) {
-      if (journal.holds(k)) resumed += std::min(chunk, list_->size() - k * chunk);
-    }
-    if (!solve(chunk, chunks, resumed, journal)) return interrupted_after(journal, chunk, chunks);
+    if (!ranks_.leads()) return follow(chunk);
+    const auto opened = open_journal(chunks);
+    Journal& journal = *opened;
+    const long resumed = done(journal, chunk, chunks);
+    if (!lead(chunk, chunks, resumed, journal)) return interrupted_after(journal, chunk, chunks);
     const Summary summary = write([&](const auto& visit) { for_records(journal, chunks, visit); });
     journal.remove();
     Result result;
@@ -250,8 +260,33 @@ class Atlas {
     return problem;
   }
 
-  // False when interrupted.
-  bool solve(long chunk, long chunks, long resumed, Journal& journal) {
+  // Throws where there is none; the other ranks are told.
+  std::unique_ptr<Journal> open_journal(long chunks) {
+    try {
+      auto journal = std::make_unique<Journal>(
+          call_.output + ".journal", identity_of(call_, run_, *list_), chunks, call_.resume);
+      (void)ranks_.agree(true);
+      return journal;
+    } catch (...) {
+      (void)ranks_.agree(false);
+      throw;
+    }
+  }
+
+  // How many problems the journal has the answers of.
+  [[nodiscard]] long done(const Journal& journal, long chunk, long chunks) const {
+    long count = 0;
+    for (long k = 0; k < chunks; ++k) {
+      if (journal.holds(k)) count += std::min(chunk, list_->size() - k * chunk);
+    }
+    return count;
+  }
+
+  // Solves the chunks that `next` gives, and hands in their records. False when stopped.
+  bool solve(long chunk,
+             const std::function<long()>& next,
+             const std::function<void(long k, const std::string& text)>& hand_in,
+             const Progress& progress) {
     ManyProblems problems;
     problems.count = list_->size();
     problems.at = [&](long i) {
@@ -262,16 +297,10 @@ class Atlas {
     };
     ManyOptions options;
     options.each = options_;
-    options.threads = run_.threads;
+    options.threads = run_.threads > 0 ? run_.threads : ranks_.threads();
     options.chunk = chunk;
-    options.wanted = [&](long k) { return !journal.holds(k); };
-    const double left = static_cast<double>(list_->size() - resumed);
-    ProgressBar bar("problems", left, run_.destination.quiet);
-    options.progress = [&, progress = bar.callback()](double fraction) {
-      const double all = static_cast<double>(chunks);
-      const double wanted = all * left / static_cast<double>(list_->size());
-      return progress(wanted > 0 ? fraction * all / wanted : 1);
-    };
+    options.next = next;
+    options.progress = progress;
     return solve_many(problems, options, [&](long first, std::span<const GeodesicReport> reports) {
       std::string text;
       for (std::size_t i = 0; i < reports.size(); ++i) {
@@ -279,21 +308,70 @@ class Atlas {
         text += json_line(atlas_record(index, problem(index), list_->parameters(), reports[i]));
         text += '\n';
       }
-      journal.append(first / chunk, text);
+      hand_in(first / chunk, text);
       return true;
     });
   }
 
-  int interrupted_after(Journal& journal, long chunk, long chunks) const {
-    long done = 0;
-    for (long k = 0; k < chunks; ++k) {
-      if (journal.holds(k)) done += std::min(chunk, list_->size() - k * chunk);
+  // Rank 0: works on chunks and hands out others, until all are done. False when interrupted.
+  bool lead(long chunk, long chunks, long resumed, Journal& journal) {
+    ChunkList list(journal, chunks);
+    std::mutex mutex;
+    std::atomic<long> known{resumed};
+    const auto next = [&] { return list.next(); };
+    const auto take = [&](long k, std::string_view text) {
+      const std::lock_guard lock(mutex);
+      journal.append(k, text);
+      known += std::min(chunk, list_->size() - k * chunk);
+    };
+    const long left = std::max(1L, list_->size() - resumed);
+    ProgressBar bar("problems", static_cast<double>(left), run_.destination.quiet);
+    std::atomic<bool> failed{false};
+    const Progress progress = [&, tell = bar.callback()](double /*of the chunks of this rank*/) {
+      return !failed && tell(static_cast<double>(known - resumed) / static_cast<double>(left));
+    };
+    const auto work = [&] { return solve(chunk, next, take, progress); };
+    if (ranks_.size() == 1) return work();
+    auto own = std::async(std::launch::async, [&] {
+      try {
+        return work();
+      } catch (...) {
+        failed = true;
+        throw;
+      }
+    });
+    try {
+      ranks_.serve({next, take, [&] { return progress(0); }});
+    } catch (...) {
+      failed = true;  // the own work ends, too
+      own.wait();
+      throw;
     }
-    if (done == 0) journal.remove();
+    return own.get() && known == list_->size();
+  }
+
+  // Another rank: asks for chunks until there are no more.
+  int follow(long chunk) {
+    if (!ranks_.agree(false)) return kSuccess;
+    const auto hand_in = [&](long k, const std::string& text) { ranks_.hand_in(k, text); };
+    try {
+      const auto ask = [&] { return ranks_.ask(); };
+      const bool finished = solve(chunk, ask, hand_in, [](double) { return !interrupted(); });
+      ranks_.leave();
+      return finished ? kSuccess : kInterrupted;
+    } catch (...) {
+      ranks_.leave();
+      throw;
+    }
+  }
+
+  int interrupted_after(Journal& journal, long chunk, long chunks) const {
+    const long known = done(journal, chunk, chunks);
+    if (known == 0) journal.remove();
     complain(fmt::format("{} of {} problems are done{}",
-                         done,
+                         known,
                          list_->size(),
-                         done > 0 ? ": the same call with --resume goes on" : ""));
+                         known > 0 ? ": the same call with --resume goes on" : ""));
     return kInterrupted;
   }
 
@@ -345,6 +423,7 @@ class Atlas {
   GeodesicOptions options_;
   std::unique_ptr<ProblemList> list_;
   std::unique_ptr<Models> models_;
+  Ranks ranks_;  // after all that may be refused
 };
 
 }  // namespace

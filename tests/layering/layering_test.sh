@@ -75,7 +75,7 @@ broken() {
   [ ! -f $adapter ] || only "$std|$ompl|$shooting" $adapter
   only "$std|$posix|$eigen|gnuplot-iostream\.h|$core|carnot/plots/[a-z0-9_]+\.h" plots
   own=$(find apps -name '*.h' | sed -E 's:^apps/::; s:\.:\\.:; s:^(.*)/:(\1/)?:' | tr '\n' '|')
-  libraries='CLI/[A-Za-z]+\.hpp|nlohmann/[a-z_]+\.hpp|fmt/[a-z]+\.h|boost/crc\.hpp|hdf5\.h'
+  libraries='mpi\.h|CLI/[A-Za-z]+\.hpp|nlohmann/[a-z_]+\.hpp|fmt/[a-z]+\.h|boost/crc\.hpp|hdf5\.h'
   quad='boost/multiprecision/(eigen|float128)\.hpp'
   only "$std|$posix|$eigen|$libraries|$quad|${own}text/version\.h|carnot/[a-z0-9_/]+\.h" \
     $(find apps -type f ! -path '*/peers/*' ! -path '*/micro/*' ! -path '*/ompl/*')

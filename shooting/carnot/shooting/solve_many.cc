@@ -29,9 +29,7 @@ class Crew {
   // What is thrown ends all of it.
   void work() {
     try {
-      for (long k = next_++; k < chunks_ && !stopped_; k = next_++) {
-        if (!options_.wanted || options_.wanted(k)) solve(k);
-      }
+      for (long k = next(); k >= 0 && !stopped_; k = next()) solve(k);
     } catch (...) {
       const std::lock_guard lock(mutex_);
       if (!error_) error_ = std::current_exception();
@@ -45,6 +43,12 @@ class Crew {
   }
 
  private:
+  long next() {
+    if (options_.next) return options_.next();
+    const long k = next_++;
+    return k < chunks_ ? k : -1;
+  }
+
   bool go_on() {
     if (!stopped_ && options_.progress) {
       const double fraction = static_cast<double>(done_) / static_cast<double>(chunks_);

@@ -29,8 +29,9 @@ struct ManyOptions {
   GeodesicOptions each;  // but for `threads` and `progress`, which are of the whole
   int threads = 0;       // 0: all cores
   long chunk = 16;       // problems
-  // Whether chunk k, of the problems k * chunk and on, is to be solved; empty: all are.
-  std::function<bool(long k)> wanted;
+  // The next chunk to solve, k for the problems k * chunk and on; -1: there are no more. Called by
+  // many threads. Empty: all of them, in their order.
+  std::function<long()> next;
   Progress progress;  // fraction of chunks done; returns false to stop
 };
 

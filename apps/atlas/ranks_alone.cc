@@ -1,0 +1,23 @@
+// One process: a build without MPI.
+#include <cassert>
+
+#include "atlas/ranks.h"
+#include "carnot/numerics/parallel.h"
+
+namespace carnot::apps {
+
+class Ranks::Implementation {};
+
+Ranks::Ranks() = default;
+Ranks::~Ranks() = default;
+
+int Ranks::size() const { return 1; }
+bool Ranks::leads() const { return true; }
+int Ranks::threads() const { return thread_count(0); }
+bool Ranks::agree(bool of_rank_0) { return of_rank_0; }
+void Ranks::serve(const Desk& /*desk*/) {}
+long Ranks::ask() { return -1; }
+void Ranks::hand_in(long /*chunk*/, std::string_view /*text*/) { assert(false); }
+void Ranks::leave() {}
+
+}  // namespace carnot::apps

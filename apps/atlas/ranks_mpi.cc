@@ -1,0 +1,148 @@
+// The processes that mpirun or srun started, by MPI.
+#include <mpi.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <cstring>
+#include <exception>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "atlas/ranks.h"
+#include "carnot/numerics/parallel.h"
+#include "text/launcher.h"
+
+namespace carnot::apps {
+namespace {
+
+enum Tag : int { kAsk = 1, kChunk, kResult, kLeave };
+
+}  // namespace
+
+class Ranks::Implementation {
+ public:
+  Implementation() {
+    int given = 0;
+    // The threads of a rank take turns, see mutex_.
+    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &given);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
+    MPI_Comm_size(MPI_COMM_WORLD, &size_);
+    MPI_Comm local = MPI_COMM_NULL;
+    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &local);
+    MPI_Comm_size(local, &neighbours_);
+    MPI_Comm_free(&local);
+  }
+  ~Implementation() { MPI_Finalize(); }
+  Implementation(const Implementation&) = delete;
+  Implementation& operator=(const Implementation&) = delete;
+
+  [[nodiscard]] int rank() const { return rank_; }
+  [[nodiscard]] int size() const { return size_; }
+  [[nodiscard]] int neighbours() const { return neighbours_; }
+
+  bool agree(bool of_rank_0) {
+    int said = of_rank_0 ? 1 : 0;
+    MPI_Bcast(&said, 1, MPI_INT, 0, MPI_COMM_WORLD);
+    return said != 0;
+  }
+
+  void serve(const Desk& desk) {
+    std::exception_ptr error;
+    bool open = true;
+    int present = size_ - 1;
+    while (present > 0) {
+      int waiting = 0;
+      MPI_Status status;
+      MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &waiting, &status);
+      open = open && desk.goes_on();
+      if (waiting == 0) {
+        std::this_thread::sleep_for(kPatience);
+        continue;
+      }
+      try {
+        present -= answer(status, desk, open && !error) ? 0 : 1;
+      } catch (...) {
+        if (!error) error = std::current_exception();
+      }
+    }
+    if (error) std::rethrow_exception(error);
+  }
+
+  long ask() {
+    const std::lock_guard lock(mutex_);
+    std::int64_t chunk = -1;
+    MPI_Send(nullptr, 0, MPI_BYTE, 0, kAsk, MPI_COMM_WORLD);
+    for (int waiting = 0; waiting == 0;) {
+      MPI_Iprobe(0, kChunk, MPI_COMM_WORLD, &waiting, MPI_STATUS_IGNORE);
+      if (waiting == 0) std::this_thread::sleep_for(kPatience);
+    }
+    MPI_Recv(&chunk, 1, MPI_INT64_T, 0, kChunk, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    return static_cast<long>(chunk);
+  }
+
+  void hand_in(std::int64_t chunk, std::string_view text) {
+    std::string message(sizeof chunk, '\0');
+    std::memcpy(message.data(), &chunk, sizeof chunk);
+    message += text;
+    const std::lock_guard lock(mutex_);
+    MPI_Send(
+        message.data(), static_cast<int>(message.size()), MPI_BYTE, 0, kResult, MPI_COMM_WORLD);
+  }
+
+  void leave() { MPI_Send(nullptr, 0, MPI_BYTE, 0, kLeave, MPI_COMM_WORLD); }
+
+ private:
+  // Between two looks for a message: to wait inside of MPI would keep a core busy that has problems
+  // to solve.
+  static constexpr std::chrono::microseconds kPatience{200};
+
+  // One message. False when its sender leaves.
+  static bool answer(const MPI_Status& message, const Desk& desk, bool open) {
+    int size = 0;
+    MPI_Get_count(&message, MPI_BYTE, &size);
+    std::string text(static_cast<std::size_t>(size), '\0');
+    MPI_Recv(text.data(),
+             size,
+             MPI_BYTE,
+             message.MPI_SOURCE,
+             message.MPI_TAG,
+             MPI_COMM_WORLD,
+             MPI_STATUS_IGNORE);
+    if (message.MPI_TAG == kLeave) return false;
+    if (message.MPI_TAG == kAsk) {
+      const std::int64_t chunk = open ? desk.next() : -1;
+      MPI_Send(&chunk, 1, MPI_INT64_T, message.MPI_SOURCE, kChunk, MPI_COMM_WORLD);
+      return true;
+    }
+    std::int64_t chunk = 0;
+    std::memcpy(&chunk, text.data(), sizeof chunk);
+    desk.take(static_cast<long>(chunk), std::string_view(text).substr(sizeof chunk));
+    return true;
+  }
+
+  std::mutex mutex_;
+  int rank_ = 0;
+  int size_ = 1;
+  int neighbours_ = 1;  // ranks of this machine, this one among them
+};
+
+Ranks::Ranks() : own_(launched_rank() >= 0 ? std::make_unique<Implementation>() : nullptr) {}
+Ranks::~Ranks() = default;
+
+int Ranks::size() const { return own_ ? own_->size() : 1; }
+bool Ranks::leads() const { return !own_ || own_->rank() == 0; }
+int Ranks::threads() const {
+  return std::max(1, thread_count(0) / (own_ ? own_->neighbours() : 1));
+}
+bool Ranks::agree(bool of_rank_0) { return own_ ? own_->agree(of_rank_0) : of_rank_0; }
+void Ranks::serve(const Desk& desk) {
+  if (own_) own_->serve(desk);
+}
+long Ranks::ask() { return own_->ask(); }
+void Ranks::hand_in(long chunk, std::string_view text) { own_->hand_in(chunk, text); }
+void Ranks::leave() { own_->leave(); }
+
+}  // namespace carnot::apps

@@ -1,0 +1,82 @@
+#!/bin/bash
+# Ranks give the bytes that threads give, also after kills.
+# usage: ranks_test.sh PROGRAM WORK_FOLDER [KILLS]
+set -euo pipefail
+program=$1
+rm -rf "$2"
+mkdir -p "$2"
+cd "$2"
+kills=${3:-8}
+
+# mpirun refuses to start programs of root, whom containers have.
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+problems=(unicycle --random 120 --seed 5 --no-times --quiet)
+
+fail() {
+  printf '%s\n' "$*"
+  exit 1
+}
+
+atlas() { "$program" atlas "${problems[@]}" --output "$@"; }
+# ranks NUMBER OUTPUT OPTION...
+ranks() { mpirun --oversubscribe -n "$1" "$program" atlas "${problems[@]}" --output "${@:2}"; }
+
+atlas one.jsonl --threads 1 >one.txt
+atlas two.jsonl --threads 2 >two.txt
+cmp one.jsonl two.jsonl
+for n in 1 2 3; do
+  ranks "$n" "ranks$n.jsonl" --threads 1 >"ranks$n.txt"
+  cmp one.jsonl "ranks$n.jsonl"
+  [ "$(grep -c '^problems' "ranks$n.txt")" = 1 ] || fail "$n ranks tell more than one result"
+done
+
+# What is refused is refused by one rank for all of them.
+for bad in '--count 0' '--problems none.csv'; do
+  # shellcheck disable=SC2086
+  if ranks 3 bad.jsonl $bad >bad.txt 2>&1; then fail "not refused: $bad"; fi
+  [ "$(grep -c '^carnot:' bad.txt)" = 1 ] || fail "refused more than once: $bad: $(cat bad.txt)"
+done
+head -c 1000 /dev/zero >taken.jsonl.journal
+if ranks 2 taken.jsonl >taken.txt 2>&1; then fail 'an old journal is not refused'; fi
+[ "$(grep -c '^carnot:' taken.txt)" = 1 ] || fail "refused more than once: $(cat taken.txt)"
+
+# Waits until no process holds the journal any more: mpirun ends before its ranks.
+released() { [ ! -e "$1" ] || flock --timeout 20 "$1" true; }
+
+# A rank that is killed ends all of them; what had been done stays.
+RANDOM=1
+for ((i = 0; i < kills; ++i)); do
+  resume=()
+  [ ! -e killed.jsonl.journal ] || resume=(--resume)
+  ranks 2 killed.jsonl --threads 1 "${resume[@]}" >killed.txt 2>&1 &
+  launcher=$!
+  sleep "0.$((RANDOM % 8 + 1))"
+  mapfile -t processes < <(pgrep -P "$launcher" || true)
+  if [ ${#processes[@]} -gt 0 ]; then
+    kill -KILL "${processes[RANDOM % ${#processes[@]}]}" 2>/dev/null || true
+  fi
+  status=0
+  wait "$launcher" || status=$?
+  released killed.jsonl.journal
+  if [ "$status" = 0 ]; then
+    cmp one.jsonl killed.jsonl
+    rm killed.jsonl
+  fi
+done
+resume=()
+[ ! -e killed.jsonl.journal ] || resume=(--resume)
+ranks 3 killed.jsonl --threads 1 "${resume[@]}" >killed.txt
+cmp one.jsonl killed.jsonl
+
+# SIGTERM, as of a cluster whose time is up: the journal stays, or all was done.
+ranks 2 ended.jsonl --threads 1 >ended.txt 2>&1 &
+launcher=$!
+sleep 0.6
+kill -TERM "$launcher"
+wait "$launcher" || true
+released ended.jsonl.journal
+resume=()
+[ ! -e ended.jsonl.journal ] || resume=(--resume)
+[ -e ended.jsonl ] || ranks 2 ended.jsonl --threads 2 "${resume[@]}" >ended.txt
+cmp one.jsonl ended.jsonl
+echo 'the same bytes'
