@@ -156,7 +156,12 @@ class Scene:
         parameters: Optional[Mapping[str, Real]] = None,
         **more_parameters: Real,
     ) -> Scene:
-        """The same scene with other parameters, method, limits or discs; the others stay."""
+        """The same scene with other parameters, method, limits or discs; the others stay.
+
+        >>> import carnot
+        >>> carnot.scene("vehicle").replace(length=2.5).parameters["length"]
+        2.5
+        """
         name, text, old, old_method, old_limits, old_discs = self._source
         new = texts.parameter_texts({**(parameters or {}), **more_parameters})
         names = {one.partition("=")[0] for one in new}
@@ -476,7 +481,15 @@ class Scene:
     def evaluate(
         self, q: npt.ArrayLike, p: npt.ArrayLike, t: float = 0.0
     ) -> tuple[float, Array, Array]:
-        """The Hamiltonian, the velocity (n,) and the multipliers (k,) at a phase point."""
+        """The Hamiltonian, the velocity (n,) and the multipliers (k,) at a phase point.
+
+        A ValueError says where the scene is not regular.
+
+        >>> import carnot
+        >>> energy, velocity, multipliers = carnot.scene("unicycle").evaluate([0, 0, 0], [2, 5, 1])
+        >>> energy, velocity.tolist()
+        (2.5, [2.0, 0.0, 1.0])
+        """
         return self._model.evaluate(numbers("q", q), numbers("p", p), t)
 
     def momentum(
@@ -486,7 +499,12 @@ class Scene:
         multipliers: Optional[npt.ArrayLike] = None,
         t: float = 0.0,
     ) -> Array:
-        """p of a velocity, which is projected on the admissible ones first."""
+        """p (n,) of a velocity, which is projected on the admissible ones first.
+
+        >>> import carnot
+        >>> carnot.scene("unicycle").momentum([0, 0, 0], [2, 0, 1], [5]).tolist()
+        [2.0, 5.0, 1.0]
+        """
         given = np.zeros(self.multipliers) if multipliers is None else multipliers
         return self._model.momentum(
             numbers("q", q), numbers("velocity", velocity), numbers("multipliers", given), t
@@ -497,6 +515,11 @@ class Scene:
 
         "as_declared" says whether order, symplectic form, time reversal, energy and constraints are
         as the method declares; "steps" is the length of the long run.
+
+        >>> import carnot
+        >>> found = carnot.scene("heisenberg", method="gauss4").verify(steps=1000)
+        >>> found["as_declared"], round(found["measured_order"])
+        (True, 4)
         """
         text = "" if steps is None else texts.number_text("--steps", steps)
         with watched(progress) as tell:
@@ -569,7 +592,12 @@ def _scene_of(
 
 
 def scenes() -> list[str]:
-    """The names of the program's scenes."""
+    """The names of the program's scenes.
+
+    >>> import carnot
+    >>> "vehicle" in carnot.scenes()
+    True
+    """
     return list(_carnot.scene_names())
 
 
@@ -602,7 +630,15 @@ def scene(
 
 
 def load(path: Union[str, os.PathLike[str]], **options: Any) -> Scene:
-    """A scene from a file, whatever its name ends in; options are those of Scene."""
+    """A scene from a file, whatever its name ends in; options are those of Scene.
+
+    >>> import carnot, pathlib, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "spring.scene")
+    ...     _ = path.write_text("coordinates x\\nlagrangian = x'^2 / 2 - x^2 / 2\\n")
+    ...     carnot.load(path)
+    <Scene spring: x; no parameters>
+    """
     name, text = _carnot.read_scene(os.fspath(path))
     return Scene(text, name=name, **options)
 

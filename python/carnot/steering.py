@@ -63,7 +63,13 @@ class Steering:
     def alternatives(
         self, start: npt.ArrayLike, goal: npt.ArrayLike, count: int = 8, samples: int = 101
     ) -> list[Way]:
-        """Up to `count` ways, least action first; one that is false where there is none."""
+        """Up to `count` ways, least action first; one that is false where there is none.
+
+        >>> import carnot
+        >>> [bool(way) for way in carnot.scene("unicycle").steering().alternatives(
+        ...     [0, 0, 0], [0, 1, 0], count=2)]
+        [True, True]
+        """
         ways = self._core.ways(numbers("start", start), numbers("goal", goal), count, samples)
         return [Way(**way) for way in ways]
 

@@ -128,6 +128,22 @@ def test_a_time_that_is_not_positive_fails_alone(unicycle):
     assert answers["solved"].tolist() == [True, False]
 
 
+@settings(max_examples=40, deadline=None)
+@given(
+    goal=st.lists(
+        st.one_of(st.floats(), st.integers(), st.none(), st.text(max_size=4), st.booleans()),
+        max_size=4,
+    )
+)
+def test_any_goal_is_solved_or_refused(goal):
+    try:
+        report = carnot.scene("grushin").geodesics([0.5, 0], goal, starts=4, time_limit=0.2)
+    except ValueError:
+        return
+    assert report.status in ("converged", "not_converged")
+    assert bool(report) == (report.reason == "none")
+
+
 @settings(max_examples=60, deadline=None)
 @given(
     array=hnp.arrays(
