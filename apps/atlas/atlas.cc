@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "atlas/atlas_output.h"
+#include "atlas/atlas_plot.h"
 #include "atlas/atlas_record.h"
 #include "atlas/chunk_list.h"
 #include "atlas/journal.h"
@@ -146,6 +147,12 @@ class Atlas {
     list_ = make_problem_list(call.list, run_);
     models_ = std::make_unique<Models>(call_.search, run_);
     if (call_.field) check_field();
+    if (!run_.destination.plot.empty()) {
+      if (list_->axes().size() < 2) {
+        refuse("--plot", run_.destination.plot, "no plane to draw", "a --grid with two axes");
+      }
+      plot_ = std::make_unique<AtlasPlot>(run_.dynamics.info, list_->axes(), run_.dynamics.dof);
+    }
     if (options_.all && has_ending(call_.output, ".h5")) {
       refuse(
           "--output", call_.output, "arrays have no room for --all", "--count K, or .csv, .jsonl");
@@ -174,7 +181,7 @@ class Atlas {
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - began;
     result.json["elapsed_seconds"] = elapsed.count();
     result.text = [&] { return atlas_text(result.json) + "written: " + call_.output + '\n'; };
-    return deliver(result, run_.destination);
+    return deliver_with_plot(result);
   }
 
   // Nothing is kept of a field that is not done: it takes seconds.
@@ -217,6 +224,11 @@ class Atlas {
                  field.bound,
                  call_.output);
     };
+    return deliver_with_plot(result);
+  }
+
+  int deliver_with_plot(Result& result) const {
+    if (plot_) result.draw = [&](const std::string& file) { return plot_->draw(file); };
     return deliver(result, run_.destination);
   }
 
@@ -396,6 +408,7 @@ class Atlas {
       const auto writer = make_atlas_writer(file.temporary(), call_.output, layout);
       records([&](const Json& record) {
         count(record, summary);
+        if (plot_) plot_->add(record);
         writer->add(record);
       });
       writer->finish();
@@ -423,7 +436,8 @@ class Atlas {
   GeodesicOptions options_;
   std::unique_ptr<ProblemList> list_;
   std::unique_ptr<Models> models_;
-  Ranks ranks_;  // after all that may be refused
+  std::unique_ptr<AtlasPlot> plot_;  // where there is to be one
+  Ranks ranks_;                      // after all that may be refused
 };
 
 }  // namespace
@@ -449,6 +463,7 @@ void add_atlas(CLI::App& app, Invocation& invocation) {
       "N",
       "times of each path to keep, both ends included (0)");
   add("--output", call->output, "FILE", "the result: .csv, .jsonl or .h5");
+  add("--plot", call->run.destination.plot, "FILE", "slices of a grid as a .png, .svg or .pdf");
   atlas.add_flag("--field", call->field, "least actions of a grid from neighbour to neighbour");
   add("--check", call->check, "N", "points of a field that are searched once more (100)");
   atlas.add_flag("--resume", call->resume, "go on where the same call was ended");
