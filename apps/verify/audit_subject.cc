@@ -95,8 +95,12 @@ std::optional<AuditSubject> audit_subject(const SceneEntry& entry) {
   constexpr int kTries = 50;
   AuditSubject subject;
   subject.entry = &entry;
+  // Another scene may have the name of one of the program.
+  const std::vector<SceneEntry>& program = scene_registry();
+  const bool known = std::any_of(
+      program.begin(), program.end(), [&](const SceneEntry& one) { return &one == &entry; });
   const auto chosen = std::find_if(choices().begin(), choices().end(), [&](const Choice& choice) {
-    return choice.scene == entry.info.name;
+    return known && choice.scene == entry.info.name;
   });
   if (chosen != choices().end()) {
     subject.parameters = chosen->parameters;
