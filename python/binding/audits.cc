@@ -12,19 +12,18 @@ namespace {
 using namespace apps;
 
 // JSON; the subject has the parameters of the model.
-py::str verify(const Model& model, const std::string& steps, const py::object& callback) {
+py::str verify(const ModelPointer& model, const std::string& steps, const py::object& callback) {
   constexpr long kFewest = 1000;
   constexpr long kMost = 100000000;
-  const SceneEntry& entry = model.entry();
+  const SceneEntry& entry = model->entry();
   auto subject = audit_subject(entry);
   if (!subject) refuse("SCENE", entry.info.name, "no start was found for it", "another scene");
-  if (!model.source().set.empty()) subject->parameters = model.flowing().parameters;
-  if (subject->energy_step > 0 && !steps.empty()) {
-    subject->energy_steps = parse_integer("--steps", steps, kFewest, kMost);
-  }
-  const Method method = model.flowing().method;
-  const auto audit =
-      answer_in_background<Json>(callback, [subject = *subject, method](const Progress& progress) {
+  if (!model->source().set.empty()) subject->parameters = model->flowing().parameters;
+  const long asked = steps.empty() ? 0 : parse_integer("--steps", steps, kFewest, kMost);
+  if (subject->energy_step > 0 && asked > 0) subject->energy_steps = asked;
+  const Method method = model->flowing().method;
+  const auto audit = answer_in_background<Json>(
+      callback, [model, subject = *subject, method](const Progress& progress) {
         return audit_json(audit_method(subject, method, audit_reference(subject), progress));
       });
   return text_of(audit);

@@ -1,10 +1,15 @@
 #include "background.h"
 
+#include <pthread.h>
+
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <stdexcept>
+#include <string>
+#include <system_error>
 #include <thread>
 
 namespace py = pybind11;
@@ -16,9 +21,11 @@ namespace {
 class Workshop {
  public:
   [[nodiscard]] bool closing() const { return closing_; }
-  void enter() {
+  // False where nothing is begun any more.
+  bool enter() {
     const std::lock_guard lock(mutex_);
-    ++at_work_;
+    if (!closing_) ++at_work_;
+    return !closing_;
   }
   void leave() {
     const std::lock_guard lock(mutex_);
@@ -26,8 +33,8 @@ class Workshop {
     left_.notify_all();
   }
   void close() {
-    closing_ = true;
     std::unique_lock lock(mutex_);
+    closing_ = true;
     left_.wait(lock, [&] { return at_work_ == 0; });
   }
 
@@ -39,10 +46,15 @@ class Workshop {
 };
 
 // Never destroyed: threads may still look at it when the process ends.
-Workshop& workshop() {
-  static auto* const shared = new Workshop;
-  return *shared;
-}
+Workshop* the_workshop = new Workshop;
+
+Workshop& workshop() { return *the_workshop; }
+
+// The child of a fork has none of the threads that are at work in its parent.
+[[maybe_unused]] const int kForks =
+    pthread_atfork(nullptr, nullptr, [] { the_workshop = new Workshop; });
+
+const std::thread::id kMainThread = std::this_thread::get_id();  // where carnot was imported
 
 // What the two threads share.
 struct Work {
@@ -77,11 +89,12 @@ bool wait_without_lock(Work& shared) {
 
 // The same without the interpreter's lock. A thread of Python that asks for the lock when the
 // interpreter has ended is ended, too, which C++ does not survive: such a thread waits here until
-// the process is gone.
+// the process is gone. Only daemons are left then.
 bool wait(Work& shared) {
   PyThreadState* const state = PyEval_SaveThread();
   const bool done = wait_without_lock(shared);
-  while (_Py_IsFinalizing() != 0) std::this_thread::sleep_for(std::chrono::seconds(1));
+  const bool daemon = std::this_thread::get_id() != kMainThread;
+  while (daemon && workshop().closing()) std::this_thread::sleep_for(std::chrono::seconds(1));
   PyEval_RestoreThread(state);
   return done;
 }
@@ -111,17 +124,22 @@ class Listener {
 void run_in_background(const py::object& callback,
                        std::function<void(const Progress& progress)> work) {
   auto shared = std::make_shared<Work>();
-  workshop().enter();
-  std::thread([shared, work = std::move(work)]() mutable {
-    run(*shared, work);
-    work = nullptr;  // with all that it owns
-    {
-      const std::lock_guard lock(shared->mutex);
-      shared->done = true;
-      shared->ended.notify_all();
-    }
+  if (!workshop().enter()) throw std::runtime_error("the interpreter is ending");
+  try {
+    std::thread([shared, work = std::move(work)]() mutable {
+      run(*shared, work);
+      work = nullptr;  // with all that it owns
+      {
+        const std::lock_guard lock(shared->mutex);
+        shared->done = true;
+        shared->ended.notify_all();
+      }
+      workshop().leave();
+    }).detach();
+  } catch (const std::system_error& error) {
     workshop().leave();
-  }).detach();
+    throw std::runtime_error(std::string("no thread could be started: ") + error.what());
+  }
   Listener listener(callback);
   try {
     while (!wait(*shared)) {

@@ -20,7 +20,8 @@ namespace carnot::python {
 
 // Runs the work and waits for it. `callback` is None or called with the fraction done; where it
 // returns False the work is told to stop, and waited for. What the work or the callback throws is
-// thrown. The work must own all that it uses: it may outlive the call.
+// thrown. The work must own all that it uses: it may outlive the call, and the scene that was
+// asked. std::runtime_error where no thread can be started, or the interpreter is ending.
 void run_in_background(const pybind11::object& callback,
                        std::function<void(const Progress& progress)> work);
 

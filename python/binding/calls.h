@@ -12,6 +12,8 @@
 
 namespace carnot::python {
 
+// Work in the background keeps the model that it is for.
+using ModelPointer = std::shared_ptr<const Model>;
 using ModelClass = pybind11::class_<Model, std::shared_ptr<Model>>;
 
 void add_description(pybind11::module_& module, ModelClass& model);

@@ -32,7 +32,7 @@ std::vector<double> codes(const std::vector<Enum>& values) {
 }
 
 // Arrays of a value for each point, the first axis slowest, and counts.
-py::dict field(const Model& model,
+py::dict field(const ModelPointer& model,
                const Texts& options,
                const std::vector<std::pair<int, std::vector<double>>>& axes,
                const py::object& callback) {
@@ -40,8 +40,8 @@ py::dict field(const Model& model,
   take(options, "from", call.from);
   take(options, "to", call.to);
   take(options, "time", call.time);
-  call.search = model.search_options(options);
-  const GeodesicRequest request = check(call, model.searching(options));
+  call.search = model->search_options(options);
+  const GeodesicRequest request = check(call, model->searching(options));
   std::string checked = "100";
   take(options, "check", checked);
   Question asked{problem_between(request.run.dynamics, request.ends), {}, {}};
@@ -49,7 +49,7 @@ py::dict field(const Model& model,
   asked.options.search = request.options;
   asked.options.threads = request.run.threads;
   asked.options.check = parse_integer("--check", checked, 0, 1000000);
-  auto answer = answer_in_background<Field>(callback, [asked](const Progress& progress) {
+  auto answer = answer_in_background<Field>(callback, [model, asked](const Progress& progress) {
     FieldOptions how = asked.options;
     how.progress = progress;
     return solve_field(asked.problem, asked.axes, how);

@@ -59,7 +59,7 @@ class Columns {
         n_(n),
         samples_(samples),
         found_(problems, 0),
-        reason_(problems),
+        reason_(problems, name_of(Reason::kInterrupted)),
         message_(problems),
         missed_(problems, kNone),
         seconds_(problems, kNone) {
@@ -199,31 +199,32 @@ std::shared_ptr<Question> question_of(const Model& model,
 }
 
 // Columns by name.
-py::dict many(const Model& model,
+py::dict many(const ModelPointer& model,
               const Texts& options,
               const Array& from,
               const Array& to,
               const Array& times,
               const std::vector<bool>& free_to,
               const py::object& callback) {
-  const auto question = question_of(model, options, from, to, times, free_to);
-  auto columns = answer_in_background<Columns>(callback, [question](const Progress& progress) {
-    const Question& asked = *question;
-    Columns answer(asked.count(), asked.search.count, asked.dynamics.dof, asked.search.samples);
-    ManyOptions how;
-    how.each = asked.search;
-    how.threads = asked.threads;
-    how.progress = progress;
-    (void)solve_many({asked.count(), [&](long i) { return asked.problem(i); }},
-                     how,
-                     [&](long first, std::span<const GeodesicReport> reports) {
-                       for (std::size_t i = 0; i < reports.size(); ++i) {
-                         answer.set(first + static_cast<long>(i), reports[i]);
-                       }
-                       return true;
-                     });
-    return answer;
-  });
+  const auto question = question_of(*model, options, from, to, times, free_to);
+  auto columns =
+      answer_in_background<Columns>(callback, [model, question](const Progress& progress) {
+        const Question& asked = *question;
+        Columns answer(asked.count(), asked.search.count, asked.dynamics.dof, asked.search.samples);
+        ManyOptions how;
+        how.each = asked.search;
+        how.threads = asked.threads;
+        how.progress = progress;
+        (void)solve_many({asked.count(), [&](long i) { return asked.problem(i); }},
+                         how,
+                         [&](long first, std::span<const GeodesicReport> reports) {
+                           for (std::size_t i = 0; i < reports.size(); ++i) {
+                             answer.set(first + static_cast<long>(i), reports[i]);
+                           }
+                           return true;
+                         });
+        return answer;
+      });
   return std::move(columns).arrays();
 }
 

@@ -15,20 +15,20 @@ namespace {
 using namespace apps;
 
 // (JSON without trajectories, [trajectory]).
-py::tuple geodesics(const Model& model, const Texts& options, const py::object& callback) {
+py::tuple geodesics(const ModelPointer& model, const Texts& options, const py::object& callback) {
   GeodesicCall call;
   take(options, "from", call.from);
   take(options, "to", call.to);
   take(options, "time", call.time);
   take(options, "guess", call.guess);
-  call.search = model.search_options(options);
-  GeodesicRequest request = check(call, model.searching(options));
+  call.search = model->search_options(options);
+  GeodesicRequest request = check(call, model->searching(options));
   bool without = false;
   take(options, "no-trajectory", without);
   if (without) request.options.samples = 0;
   request.run.no_trajectory = true;  // they go to Python as arrays
   GeodesicReport report =
-      answer_in_background<GeodesicReport>(callback, [request](const Progress& progress) {
+      answer_in_background<GeodesicReport>(callback, [model, request](const Progress& progress) {
         GeodesicOptions search = request.options;
         search.progress = progress;
         return find_geodesics(problem_between(request.run.dynamics, request.ends), search);
@@ -45,7 +45,7 @@ py::tuple geodesics(const Model& model, const Texts& options, const py::object& 
 }
 
 // JSON.
-py::str follow_line(const Model& model, const Texts& options, const py::object& callback) {
+py::str follow_line(const ModelPointer& model, const Texts& options, const py::object& callback) {
   ContinueCall call;
   take(options, "from", call.from);
   take(options, "to", call.to);
@@ -58,14 +58,17 @@ py::str follow_line(const Model& model, const Texts& options, const py::object& 
   take(options, "time-limit", call.time_limit);
   take(options, "branches", call.branches);
   take(options, "no-labels", call.no_labels);
-  if (!model.limits().empty()) {
-    refuse("SCENE", model.entry().info.name, "continuation does not keep to limits", "none");
+  if (!model->limits().empty()) {
+    refuse("SCENE",
+           model->entry().info.name,
+           "continuation does not keep to limits",
+           "a scene without them");
   }
   // The parts of a request refer to each other: it stays where it is.
   const auto request =
-      std::make_shared<const ContinueRequest>(check(call, model.searching(options)));
+      std::make_shared<const ContinueRequest>(check(call, model->searching(options)));
   const auto report = answer_in_background<ContinuationReport>(
-      callback, [request](const Progress& progress) { return follow(*request, progress); });
+      callback, [model, request](const Progress& progress) { return follow(*request, progress); });
   return text_of(continue_result(*request, report, {}).json);
 }
 

@@ -37,7 +37,10 @@ Handle make(const std::shared_ptr<Model>& model,
             bool mod_angles,
             const std::vector<bool>& free_target) {
   if (!model->limits().empty()) {
-    refuse("SCENE", model->entry().info.name, "steering does not keep to limits", "none");
+    refuse("SCENE",
+           model->entry().info.name,
+           "steering does not keep to limits",
+           "a scene without them");
   }
   const Run run = model->searching(options);
   const GeodesicOptions search = check(model->search_options(options), run);
@@ -65,9 +68,11 @@ struct Way {
   std::vector<std::vector<double>> q;
 };
 
-Way sampled(const Steering& steering, int n, long samples) {
+Way sampled(const Steering& steering, int n, long samples, const Progress& progress) {
+  constexpr long kOften = 1000;
   Way way{steering, {}};
   for (long i = 0; i < samples && steering.found(); ++i) {
+    if (i % kOften == 0 && !progress(0)) break;
     way.q.emplace_back(n);
     (void)steering.at(static_cast<double>(i) / static_cast<double>(samples - 1), way.q.back());
   }
@@ -79,16 +84,20 @@ py::list ways(
   const int n = self->dof();
   const std::vector<double> from = vector_of(from_in, "start", n);
   const std::vector<double> to = vector_of(to_in, "goal", n);
-  if (samples < 2) throw std::invalid_argument("samples: less than 2");
+  constexpr long kMostSamples = 1000000;
+  if (samples < 2 || samples > kMostSamples) {
+    throw std::invalid_argument(
+        fmt::format("samples: {}; accepted: 2 to {}", samples, kMostSamples));
+  }
   const auto found =
       answer_in_background<std::vector<Way>>(py::none(), [=](const Progress& progress) {
         std::vector<Way> list;
         const Asking call(progress);
         if (count == 1) {
-          list.push_back(sampled(self->steer(from, to), n, samples));
+          list.push_back(sampled(self->steer(from, to), n, samples, progress));
         } else {
           for (const Steering& way : self->alternatives(from, to, count)) {
-            list.push_back(sampled(way, n, samples));
+            list.push_back(sampled(way, n, samples, progress));
           }
         }
         return list;
