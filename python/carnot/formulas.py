@@ -9,6 +9,7 @@ import sympy
 from sympy.printing.str import StrPrinter
 
 from carnot.scene import Scene
+from carnot.texts import number_text
 
 FUNCTIONS = {
     name: name
@@ -17,6 +18,8 @@ FUNCTIONS = {
         "atan2",
     )
 }  # fmt: skip
+
+RECIPROCALS = {"sec": "cos", "csc": "sin", "sech": "cosh", "csch": "sinh"}
 
 
 def scene_of(
@@ -44,7 +47,13 @@ def scene_of(
     `parameters` have their values, which the scene has as defaults. `angles` are coordinates of
     period 2 pi. What the language has no word for is a ValueError that names it.
     """
-    printer = _Printer(q, velocities)
+    if isinstance(q, str) or not all(isinstance(x, sympy.Basic) for x in q) or not q:
+        raise ValueError(f"q {q!r}: accepted: symbols, or functions of time, at least one")
+    if len(set(q)) != len(q):
+        raise ValueError(f"q {q!r}: a coordinate is there twice; accepted: each once")
+    if isinstance(constraints, (sympy.Basic, sympy.MatrixBase)):
+        constraints = list(constraints) if isinstance(constraints, sympy.MatrixBase) else [constraints]
+    printer = _Printer(q, velocities, controls)
     angle_names = {printer.coordinate(x) for x in angles}
     unit_names = {printer.coordinate(x): unit for x, unit in (units or {}).items()}
     unit_names.update({x: "angle" for x in angle_names})
@@ -52,28 +61,46 @@ def scene_of(
         f"{x} [{unit_names[x]}]" if x in unit_names else x for x in printer.coordinates
     ]
     lines = [f"coordinates {coordinate}" for coordinate in coordinates]
-    lines += [
-        f"parameters {printer.doprint(symbol)} = {float(value)!r}"
-        for symbol, value in (parameters or {}).items()
-    ]
+    for symbol, value in (parameters or {}).items():
+        default = number_text(f"parameters {symbol}", value)
+        lines.append(f"parameters {printer.doprint(symbol)} = {default}")
     if controls:
         lines.append("controls " + ", ".join(printer.doprint(u) for u in controls))
     given = {"kinetic": kinetic, "potential": potential, "lagrangian": lagrangian, "cost": cost}
     for word, formula in given.items():
         if formula is not None:
-            lines.append(f"{word} = {printer.doprint(sympy.sympify(formula))}")
+            lines.append(f"{word} = {printer.doprint(_scalar(word, formula))}")
     for constraint in constraints:
         zero = constraint.lhs - constraint.rhs if isinstance(constraint, sympy.Eq) else constraint
-        lines.append(f"0 = {printer.doprint(sympy.sympify(zero))}")
+        lines.append(f"0 = {printer.doprint(_scalar('constraints', zero))}")
+    if rates is not None and len(rates) != len(q):
+        raise ValueError(f"rates: {len(rates)} of them; accepted: one for each of {len(q)}")
     for x, rate in zip(printer.coordinates, rates or ()):
-        lines.append(f"{x}' = {printer.doprint(sympy.sympify(rate))}")
+        right = rate.rhs if isinstance(rate, sympy.Eq) else rate
+        lines.append(f"{x}' = {printer.doprint(_scalar('rates', right))}")
+    if isinstance(options.get("limits"), Mapping):
+        options["limits"] = {
+            printer.doprint(one) if isinstance(one, sympy.Basic) else one: bounds
+            for one, bounds in options["limits"].items()
+        }
     return Scene("\n".join(lines) + "\n", name=name, **options)
+
+
+def _scalar(word: str, formula: Any) -> Any:
+    formula = sympy.sympify(formula)
+    if isinstance(formula, sympy.MatrixBase):
+        if formula.shape != (1, 1):
+            raise ValueError(f"{word}: a matrix of {formula.shape}; accepted: a formula")
+        formula = formula[0, 0]
+    return formula
 
 
 class _Printer(StrPrinter):
     """Prints formulas in the language of scenes."""
 
-    def __init__(self, q: Sequence[Any], velocities: Optional[Sequence[Any]]) -> None:
+    def __init__(
+        self, q: Sequence[Any], velocities: Optional[Sequence[Any]], controls: Sequence[Any]
+    ) -> None:
         super().__init__({"full_prec": False})
         if velocities is not None and len(velocities) != len(q):
             raise ValueError(
@@ -91,6 +118,7 @@ class _Printer(StrPrinter):
         for x, name in zip(q, self.coordinates):
             if x.args:
                 self._names[x.diff(self._time)] = f"{name}'"
+        self._names.update({u: self._name(u) for u in controls})
         for v, name in zip(velocities or (), self.coordinates):
             self._names[v] = f"{name}'"
 
@@ -145,6 +173,10 @@ class _Printer(StrPrinter):
 
     def _print_Function(self, expr: Any) -> str:
         name = expr.func.__name__
+        if name == "cot":
+            return self._print(sympy.cos(expr.args[0]) / sympy.sin(expr.args[0]))
+        if name in RECIPROCALS:
+            return f"(1 / {RECIPROCALS[name]}({self._print(expr.args[0])}))"
         if name not in FUNCTIONS:
             raise ValueError(f"{expr}: no such function; accepted: {', '.join(FUNCTIONS)}")
         return f"{FUNCTIONS[name]}({', '.join(self._print(a) for a in expr.args)})"

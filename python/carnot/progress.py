@@ -17,6 +17,8 @@ def watched(progress: Progress) -> Iterator[Optional[Callable[[float], Optional[
     if progress is None or progress is False:
         yield None
     elif progress is not True:
+        if not callable(progress):
+            raise ValueError(f"progress {progress!r}: accepted: a function, True or None")
         yield progress
     else:
         with _bar() as tell:

@@ -17,7 +17,7 @@ from carnot.flow import Flow, flow_of
 from carnot.geodesic import Geodesic, Report, report_of
 from carnot.progress import Progress, watched
 from carnot.steering import Steering
-from carnot.texts import Configuration, Limits, Real
+from carnot.texts import Configuration, Integer, Limits, Real
 from carnot.values import Array, numbers, row_pairs
 
 VERIFICATIONS = np.array(["single", "knots", "grid", ""])
@@ -55,14 +55,15 @@ class Scene:
         parameters: Optional[Mapping[str, Real]] = None,
         **more_parameters: Real,
     ) -> None:
-        if not text.strip():
-            raise ValueError("text: is empty; accepted: a scene in the language of scenes")
-        values = {**(parameters or {}), **more_parameters}
+        if not isinstance(text, str) or not text.strip():
+            raise ValueError(
+                f"text {text!r}: is no scene; accepted: a text in the language of scenes"
+            )
         self._set(
             name,
             text,
-            texts.parameter_texts(values),
-            method or "",
+            texts.parameter_texts(parameters, more_parameters),
+            _method(method),
             texts.limit_texts(limits),
             texts.disc_texts(discs),
         )
@@ -163,14 +164,14 @@ class Scene:
         2.5
         """
         name, text, old, old_method, old_limits, old_discs = self._source
-        new = texts.parameter_texts({**(parameters or {}), **more_parameters})
+        new = texts.parameter_texts(parameters, more_parameters)
         names = {one.partition("=")[0] for one in new}
         kept = [one for one in old if one.partition("=")[0] not in names]
         return _scene_of(
             name,
             text,
             kept + new,
-            old_method if method is None else method,
+            old_method if method is None else _method(method),
             old_limits if limits is None else texts.limit_texts(limits),
             old_discs if discs is None else texts.disc_texts(discs),
         )
@@ -183,18 +184,18 @@ class Scene:
         goal: Configuration,
         *,
         time: Real = 1,
-        count: Optional[int] = None,
+        count: Optional[Integer] = None,
         all: bool = False,
         max_length: Optional[Real] = None,
-        starts: Optional[int] = None,
+        starts: Optional[Integer] = None,
         tolerance: Optional[Real] = None,
         minimiser: Optional[str] = None,
         mod_angles: bool = False,
         guess: Optional[Configuration] = None,
         time_limit: Optional[Real] = None,
-        seed: int = 0,
-        threads: Optional[int] = None,
-        samples: int = 201,
+        seed: Integer = 0,
+        threads: Optional[Integer] = None,
+        samples: Integer = 201,
         progress: Progress = None,
     ) -> Report:
         """Extremals that join two configurations, without a guess; least action first.
@@ -214,23 +215,23 @@ class Scene:
             {
                 "time": time,
                 "count": count,
-                "all": all,
                 "max_length": max_length,
                 "starts": starts,
                 "tolerance": tolerance,
                 "minimiser": minimiser,
-                "mod_angles": mod_angles,
                 "time_limit": time_limit,
                 "seed": seed,
                 "threads": threads,
                 "samples": samples,
-            }
+            },
+            all=all,
+            mod_angles=mod_angles,
         )
         options["from"] = texts.vector_text("--from", start)
         options["to"] = texts.vector_text("--to", goal)
         if guess is not None:
             options["guess"] = texts.vector_text("--guess", guess)
-        if samples == 0:
+        if options.get("samples") == "0":
             del options["samples"]
             options["no-trajectory"] = "1"
         with watched(progress) as tell:
@@ -244,7 +245,7 @@ class Scene:
         to: Optional[Configuration] = None,
         start: Optional[Configuration] = None,
         time: Optional[Real] = None,
-        max_points: Optional[int] = None,
+        max_points: Optional[Integer] = None,
         tolerance: Optional[Real] = None,
         branches: bool = False,
         labels: bool = True,
@@ -259,6 +260,8 @@ class Scene:
         >>> curve.status
         'reached'
         """
+        if not isinstance(geodesic, Geodesic):
+            raise ValueError(f"geodesic {geodesic!r}: accepted: a geodesic, such as report[0]")
         ways = {
             "to": None if to is None else texts.vector_text("--along", to),
             "from": None if start is None else texts.vector_text("--along", start),
@@ -275,15 +278,15 @@ class Scene:
                 "parameter"
             )
         options = texts.option_texts(
-            {"max_points": max_points, "tolerance": tolerance, "branches": branches}
+            {"max_points": max_points, "tolerance": tolerance},
+            branches=branches,
+            no_labels=not labels,
         )
         options["along"] = "=".join(next(iter(chosen.items())))
         options["time"] = repr(geodesic.time)
         options["from"] = texts.vector_text("--from", geodesic.start)
         options["to"] = texts.vector_text("--to", geodesic.goal)
         options["guess"] = texts.vector_text("--guess", geodesic.p0)
-        if not labels:
-            options["no-labels"] = "1"
         with watched(progress) as tell:
             found = self._model.follow(options, tell)
         return continuation_of(self, json.loads(found))
@@ -294,17 +297,17 @@ class Scene:
         goals: npt.ArrayLike,
         *,
         time: npt.ArrayLike = 1.0,
-        free_goal: Sequence[str] = (),
-        count: int = 1,
+        free_goal: Union[str, Sequence[str]] = (),
+        count: Optional[Integer] = None,
         max_length: Optional[Real] = None,
-        search_starts: Optional[int] = None,
+        search_starts: Optional[Integer] = None,
         tolerance: Optional[Real] = None,
         minimiser: Optional[str] = None,
         mod_angles: bool = False,
         time_limit: Optional[Real] = None,
-        seed: int = 0,
-        threads: Optional[int] = None,
-        samples: int = 0,
+        seed: Integer = 0,
+        threads: Optional[Integer] = None,
+        samples: Integer = 0,
         progress: Progress = None,
     ) -> npt.NDArray[np.void]:
         """Geodesics between many pairs, (N, n) and (N, n), on all cores.
@@ -325,23 +328,25 @@ class Scene:
         free = self._marked("free_goal", free_goal)
         options = texts.option_texts(
             {
-                "count": count,
+                "count": 1 if count is None else count,
                 "max_length": max_length,
                 "starts": search_starts,
                 "tolerance": tolerance,
                 "minimiser": minimiser,
-                "mod_angles": mod_angles,
                 "time_limit": time_limit,
                 "seed": seed,
                 "threads": threads,
                 "trajectories": samples,
-            }
+            },
+            mod_angles=mod_angles,
         )
         times = np.atleast_1d(numbers("time", time))
+        if not (np.isfinite(times) & (times > 0)).all():
+            raise ValueError(f"time {time!r}: is not positive; accepted: finite numbers > 0")
         with watched(progress) as tell:
             found = self._model.solve_many(options, rows[0], rows[1], times, free, tell)
         answers = _answers(found, len(self.coordinates))
-        return answers[:, 0] if count == 1 else answers
+        return answers[:, 0] if options["count"] == "1" else answers
 
     def distance_field(
         self,
@@ -351,10 +356,10 @@ class Scene:
         goal: Optional[Configuration] = None,
         time: Real = 1,
         mod_angles: bool = False,
-        check: int = 100,
+        check: Integer = 100,
         tolerance: Optional[Real] = None,
-        seed: int = 0,
-        threads: Optional[int] = None,
+        seed: Integer = 0,
+        threads: Optional[Integer] = None,
         progress: Progress = None,
     ) -> Field:
         """The least action to every point of a grid {coordinate: equidistant values}.
@@ -373,40 +378,43 @@ class Scene:
         options = texts.option_texts(
             {
                 "time": time,
-                "mod_angles": mod_angles,
                 "check": check,
                 "tolerance": tolerance,
                 "seed": seed,
                 "threads": threads,
-            }
+            },
+            mod_angles=mod_angles,
         )
+        if not isinstance(grid, Mapping):
+            raise ValueError(f"grid {grid!r}: accepted: {{coordinate: equidistant values}}")
         origin = ",".join("0" * n)
         options["from"] = origin if start is None else texts.vector_text("--from", start)
         options["to"] = origin if goal is None else texts.vector_text("--to", goal)
         axes = {name: numbers(f"grid {name}", values) for name, values in grid.items()}
         for name, values in axes.items():
-            if name not in self.coordinates or values.ndim != 1:
+            if name not in self.coordinates:
                 raise ValueError(
-                    f"grid {name}: {values.ndim} dimensions; accepted: numbers in a row for one of "
-                    f"{', '.join(self.coordinates)}"
+                    f"grid {name!r}: no such coordinate; accepted: {', '.join(self.coordinates)}"
                 )
+            if values.ndim != 1:
+                raise ValueError(f"grid {name}: {values.ndim} dimensions; accepted: one")
         listed = [(self.coordinates.index(name), list(axes[name])) for name in axes]
         with watched(progress) as tell:
             found = self._model.distance_field(options, listed, tell)
         begin = np.array([float(x) for x in _read(options["from"])])
-        return field_of(self, begin, float(_read(options["time"])[0]), axes, found)
+        return field_of(self, begin, _read(options.get("time", "1"))[0], axes, found)
 
     def steering(
         self,
         *,
         time: Real = 1,
         mod_angles: bool = True,
-        free_goal: Sequence[str] = (),
-        starts: Optional[int] = None,
+        free_goal: Union[str, Sequence[str]] = (),
+        starts: Optional[Integer] = None,
         tolerance: Optional[Real] = None,
-        seed: int = 0,
-        threads: int = 1,
-        memory: Optional[int] = None,
+        seed: Integer = 0,
+        threads: Integer = 1,
+        memory: Optional[Integer] = None,
     ) -> Steering:
         """Distances and paths for a planner; `memory` is how many answers are kept.
 
@@ -427,7 +435,9 @@ class Scene:
                 "memory": memory,
             }
         )
-        return Steering(self, options, mod_angles, self._marked("free_goal", free_goal))
+        if not isinstance(mod_angles, (bool, np.bool_)):
+            raise ValueError(f"--mod-angles {mod_angles!r}: is no flag; accepted: True, False")
+        return Steering(self, options, bool(mod_angles), self._marked("free_goal", free_goal))
 
     # ---- flows
 
@@ -440,12 +450,12 @@ class Scene:
         velocity: Optional[Configuration] = None,
         multipliers: Optional[Configuration] = None,
         step: Optional[Real] = None,
-        steps: Optional[int] = None,
+        steps: Optional[Integer] = None,
         tolerance: Optional[Real] = None,
         method: Optional[str] = None,
         start_time: Real = 0,
         tangent: bool = False,
-        samples: int = 201,
+        samples: Integer = 201,
         progress: Progress = None,
     ) -> Flow:
         """Advances (q, p), or q with a velocity that satisfies the constraints.
@@ -466,16 +476,21 @@ class Scene:
                 "steps": steps,
                 "tolerance": tolerance,
                 "start_time": start_time,
-                "tangent": tangent,
                 "samples": samples,
-            }
+            },
+            tangent=tangent,
         )
+        bare = options.get("samples") == "0"
+        if bare:
+            del options["samples"]
         options["from"] = texts.vector_text("--from", q)
         for name, value in (("momentum", p), ("velocity", velocity), ("lambda", multipliers)):
             if value is not None:
                 options[name] = texts.vector_text(f"--{name}", value)
         with watched(progress) as tell:
             found, action, length, trajectory = scene._model.flow(options, tell)
+        if bare:
+            trajectory = {name: values[:0] for name, values in trajectory.items()}
         return flow_of(scene, json.loads(found), action, length, trajectory)
 
     def evaluate(
@@ -490,7 +505,7 @@ class Scene:
         >>> energy, velocity.tolist()
         (2.5, [2.0, 0.0, 1.0])
         """
-        return self._model.evaluate(numbers("q", q), numbers("p", p), t)
+        return self._model.evaluate(numbers("q", q), numbers("p", p), _real("t", t))
 
     def momentum(
         self,
@@ -507,10 +522,10 @@ class Scene:
         """
         given = np.zeros(self.multipliers) if multipliers is None else multipliers
         return self._model.momentum(
-            numbers("q", q), numbers("velocity", velocity), numbers("multipliers", given), t
+            numbers("q", q), numbers("velocity", velocity), numbers("multipliers", given), _real("t", t)
         )[0]
 
-    def verify(self, *, steps: Optional[int] = None, progress: Progress = None) -> dict[str, Any]:
+    def verify(self, *, steps: Optional[Integer] = None, progress: Progress = None) -> dict[str, Any]:
         """What the method keeps on this scene, as `carnot verify` measures it.
 
         "as_declared" says whether order, symplectic form, time reversal, energy and constraints are
@@ -551,7 +566,8 @@ class Scene:
 
     # ---- as a value
 
-    def _marked(self, option: str, names: Sequence[str]) -> list[bool]:
+    def _marked(self, option: str, names: Union[str, Sequence[str]]) -> list[bool]:
+        names = [names] if isinstance(names, str) else list(names or ())
         unknown = [name for name in names if name not in self.coordinates]
         if unknown:
             raise ValueError(
@@ -566,11 +582,15 @@ class Scene:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scene):
             return NotImplemented
-        return self._source == other._source
+        return self._identity() == other._identity()
 
     def __hash__(self) -> int:
-        name, text, parameters, method, limits, discs = self._source
-        return hash((name, text, tuple(parameters), method, tuple(limits), tuple(discs)))
+        return hash(self._identity())
+
+    def _identity(self) -> tuple[Any, ...]:
+        name, text, _, _, limits, discs = self._source
+        methods = (self.method, self._about["flow_method"])
+        return (name, text, tuple(self.parameters.items()), methods, tuple(limits), tuple(discs))
 
     def __repr__(self) -> str:
         values = ", ".join(f"{name} = {value:g}" for name, value in self.parameters.items())
@@ -617,13 +637,15 @@ def scene(
     <Scene vehicle: x, y, theta, phi; alpha = 1, beta = 1, length = 2.8, phi - theta limited>
     """
     text = ""
+    if not isinstance(name, str):
+        raise ValueError(f"SCENE {name!r}: is no name; accepted: one of scenes()")
     if _carnot.is_scene_file(name):
         name, text = _carnot.read_scene(name)
     return _scene_of(
         name,
         text,
-        texts.parameter_texts({**(parameters or {}), **more_parameters}),
-        method or "",
+        texts.parameter_texts(parameters, more_parameters),
+        _method(method),
         texts.limit_texts(limits),
         texts.disc_texts(discs),
     )
@@ -641,6 +663,16 @@ def load(path: Union[str, os.PathLike[str]], **options: Any) -> Scene:
     """
     name, text = _carnot.read_scene(os.fspath(path))
     return Scene(text, name=name, **options)
+
+
+def _method(name: Optional[str]) -> str:
+    if name is not None and not isinstance(name, str):
+        raise ValueError(f"--method {name!r}: is no name; accepted: one of Scene.methods")
+    return name or ""
+
+
+def _real(name: str, value: Any) -> float:
+    return float(_carnot.read_number(texts.number_text(name, value)))
 
 
 def _read(text: str) -> list[float]:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, Any, Union
+import numbers as numbers_abc
+from typing import TYPE_CHECKING, Any, Optional
 
-import numpy as np
 import numpy.typing as npt
 
 from carnot import _carnot
@@ -70,20 +70,37 @@ class Steering:
         ...     [0, 0, 0], [0, 1, 0], count=2)]
         [True, True]
         """
-        ways = self._core.ways(numbers("start", start), numbers("goal", goal), count, samples)
+        ways = self._core.ways(
+            numbers("start", start), numbers("goal", goal), _whole("count", count), _whole("samples", samples)
+        )
         return [Way(**way) for way in ways]
 
-    def distance(
-        self, start: npt.ArrayLike, goal: npt.ArrayLike, threads: int = 0
-    ) -> Union[float, Array]:
-        """The length, or the action where the scene has none; infinite where nothing was found.
+    def distance(self, start: npt.ArrayLike, goal: npt.ArrayLike) -> float:
+        """The length, or the action where the scene has none; infinite where nothing was found."""
+        a, b = numbers("start", start), numbers("goal", goal)
+        if a.ndim != 1 or b.ndim != 1:
+            raise ValueError(
+                f"goal: shape {b.shape}, start {a.shape}; accepted: one configuration each, "
+                "distances() takes rows"
+            )
+        return float(self.distances(a, b, threads=1)[0])
 
-        (n,) and (n,) give a number; (N, n) and (N, n) give N numbers, on all cores or on `threads`.
-        One of the two may be (n,) while the other is (N, n).
+    def distances(
+        self, starts: npt.ArrayLike, goals: npt.ArrayLike, threads: Optional[int] = None
+    ) -> Array:
+        """The same of rows: N numbers of (N, n) and (N, n), on all cores or on `threads`.
+
+        One of the two may be a single configuration.
+
+        >>> import carnot, numpy
+        >>> steer = carnot.scene("unicycle").steering()
+        >>> steer.distances([0, 0, 0], numpy.eye(3)).round(6).tolist()
+        [1.0, 3.340383, 1.0]
         """
-        rows = row_pairs(start, goal)
-        found = self._core.distances(rows[0], rows[1], threads)
-        return float(found[0]) if np.ndim(start) == np.ndim(goal) == 1 else found
+        if threads is not None and not 1 <= threads <= 1024:
+            raise ValueError(f"--threads {threads!r}: accepted: an integer from 1 to 1024")
+        rows = row_pairs(starts, goals)
+        return self._core.distances(rows[0], rows[1], threads or 0)
 
     def __reduce__(self) -> Any:
         return Steering, (self._scene, *self._made_with)
@@ -98,3 +115,9 @@ class Steering:
     def __repr__(self) -> str:
         return f"<Steering of {self._scene.name}>"
 
+
+
+def _whole(name: str, value: Any) -> int:
+    if isinstance(value, bool) or not isinstance(value, numbers_abc.Integral):
+        raise ValueError(f"{name} {value!r}: accepted: an integer")
+    return int(value)

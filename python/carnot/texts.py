@@ -7,16 +7,17 @@ a number back to its last bit.
 from __future__ import annotations
 
 import numbers
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
 
 # A number, or a text such as "pi/2".
-Real = Union[float, int, str]
+Integer = Union[int, "np.integer[Any]"]
+Real = Union[float, int, str, "np.floating[Any]", "np.integer[Any]"]
 # A configuration: numbers, or one text "0,1,pi/2,0". None, or "*", is a free coordinate.
-Configuration = Union[str, Iterable[Union[float, int, str, None]], npt.NDArray[Any]]
+Configuration = Union[str, Sequence[Optional[Real]], npt.NDArray[Any]]
 
 
 def number_text(option: str, value: Any) -> str:
@@ -35,23 +36,28 @@ def vector_text(option: str, value: Any) -> str:
     if isinstance(value, str):
         return value
     accepted = "accepted: numbers in a row, or None for one that is free"
-    try:
-        items = list(value)
-    except TypeError:
-        raise ValueError(f"{option} {value!r}: is no row; {accepted}") from None
+    ordered = isinstance(value, (Sequence, np.ndarray)) and not isinstance(value, bytes)
+    if not ordered or (isinstance(value, np.ndarray) and value.ndim == 0):
+        raise ValueError(f"{option} {value!r}: is no row; {accepted}")
+    items = list(value)
     if any(isinstance(item, (list, tuple, dict, set, np.ndarray)) for item in items):
         raise ValueError(f"{option}: has more than one dimension; {accepted}")
     return ",".join("*" if item is None else number_text(option, item) for item in items)
 
 
-def option_texts(options: Mapping[str, Any]) -> dict[str, str]:
-    """By the program's names, without what is None or False."""
+def option_texts(options: Mapping[str, Any], **flags: Any) -> dict[str, str]:
+    """By the program's names, without what is None, and without flags that are False."""
     texts = {}
     for name, value in options.items():
+        if value is not None:
+            option = name.replace("_", "-")
+            texts[option] = number_text(f"--{option}", value)
+    for name, value in flags.items():
         option = name.replace("_", "-")
-        if value is None or value is False:
-            continue
-        texts[option] = "1" if value is True else number_text(f"--{option}", value)
+        if not isinstance(value, (bool, np.bool_)):
+            raise ValueError(f"--{option} {value!r}: is no flag; accepted: True, False")
+        if value:
+            texts[option] = "1"
     return texts
 
 
@@ -65,6 +71,8 @@ def limit_texts(limits: Limits) -> list[str]:
         return []
     if isinstance(limits, str):
         return [limits]
+    if not isinstance(limits, (Mapping, Sequence)):
+        raise ValueError(f"--limit {limits!r}: accepted: {{'EXPRESSION': (lower, upper)}}, or texts")
     if not isinstance(limits, Mapping):
         return [str(limit) for limit in limits]
     texts = []
@@ -83,9 +91,17 @@ def limit_texts(limits: Limits) -> list[str]:
 
 def disc_texts(discs: Optional[Iterable[Any]]) -> list[str]:
     """'X,Y,R' of (x, y, radius)."""
-    return [vector_text("--disc", disc) for disc in discs or ()]
+    if discs is None:
+        return []
+    listed = isinstance(discs, (Sequence, np.ndarray)) and not isinstance(discs, (str, bytes))
+    if not listed or not all(isinstance(disc, (str, Sequence, np.ndarray)) for disc in discs):
+        raise ValueError(f"--disc {discs!r}: accepted: a list of (x, y, radius)")
+    return [vector_text("--disc", disc) for disc in discs]
 
 
-def parameter_texts(values: Mapping[str, Any]) -> list[str]:
+def parameter_texts(given: Optional[Mapping[str, Any]], more: Mapping[str, Any]) -> list[str]:
     """'NAME=VALUE'."""
-    return [f"{name}={number_text('--set ' + name, value)}" for name, value in values.items()]
+    if given is not None and not isinstance(given, Mapping):
+        raise ValueError(f"parameters {given!r}: accepted: {{NAME: VALUE}}")
+    values = {**(given or {}), **more}
+    return [f"{name}={number_text(f'--set {name}', value)}" for name, value in values.items()]

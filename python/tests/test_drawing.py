@@ -66,5 +66,6 @@ def test_a_field_and_a_curve(unicycle, car, parking):
 
 
 def test_needs_samples(car):
-    with pytest.raises(ValueError, match="--samples"):
-        car.geodesics([0, 0, 0, 0], [0, 1, 0, 0], samples=0)
+    bare = car.geodesics([0, 0, 0, 0], [0, 1, 0, 0], samples=0).best()
+    with pytest.raises(ValueError, match="samples"):
+        bare.plot()

@@ -42,6 +42,13 @@ def test_is_that_of_the_program_to_the_last_bit(options, arguments, answer):
         assert run.tangent is None
 
 
+def test_without_samples(car):
+    run = car.flow(Q0, P0, time=1, steps=10, samples=0)
+    assert run.completed
+    assert run.q.shape == (0, 4)
+    assert run == car.flow(Q0, P0, time=1, steps=10, samples=0)
+
+
 def test_velocity_gives_the_momentum(car, answer):
     velocity = [math.cos(0.8), math.sin(0.8), math.sin(0.5), 0.2]
     run = car.flow(Q0, velocity=velocity, multipliers=[0.1, 0.2], time=1, steps=10)

@@ -35,6 +35,8 @@ def test_target_start_and_time(car, parking):
 
 
 def test_refuses(car, parking):
+    with pytest.raises(ValueError, match="geodesic"):
+        car.follow(parking, alpha=2)
     with pytest.raises(ValueError, match="0 things change"):
         car.follow(parking.best())
     with pytest.raises(ValueError, match="2 things change"):
@@ -61,5 +63,13 @@ def test_method_keeps_what_it_declares():
     assert found["symplecticity_defect"] < 100 * np.finfo(float).eps
     radau = carnot.scene("heisenberg", method="radau5").verify(steps=1000)
     assert radau["symplecticity_verdict"] == "breaks"
-    with pytest.raises(ValueError, match="--steps"):
-        carnot.scene("heisenberg").verify(steps=1)
+    for name in ("heisenberg", "unicycle"):  # with a long run, and without
+        with pytest.raises(ValueError, match="--steps"):
+            carnot.scene(name).verify(steps=1)
+
+
+def test_a_name_does_not_make_a_scene_one_of_the_program():
+    text = "coordinates a, b, c\nkinetic = (a'^2 + b'^2 + c'^2) / 2\n"
+    named = carnot.Scene(text, name="heisenberg").verify(steps=1000)
+    other = carnot.Scene(text, name="other").verify(steps=1000)
+    assert {**named, "scene": ""} == {**other, "scene": ""}

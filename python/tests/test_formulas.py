@@ -74,6 +74,7 @@ def test_controls_and_cost():
         -(x**2) + 2 ** (x / 3),
         sympy.cos(x) * (x - 1) ** 4 / 7,
         sympy.sin(t) * x,
+        sympy.sec(x / 4) + sympy.cot(1 + x / 4) - sympy.csc(1 + x / 4) * sympy.sech(x),
     ],
 )
 def test_formulas_keep_their_values(formula):
@@ -83,6 +84,55 @@ def test_formulas_keep_their_values(formula):
     for q, time in ((0.3, 0.0), (-0.7, 1.5), (1.9, -2.0)):
         energy, _, _ = scene.evaluate([q], [0.5], time)
         assert energy == pytest.approx(0.125 + value(q, time), rel=1e-14, abs=1e-14)
+
+
+def test_what_people_write(unicycle):
+    """Matrices, equations, functions as controls, one constraint alone, symbols as limits."""
+    u, w = (sympy.Function(name)(t) for name in ("u", "w"))
+    v = sympy.Matrix([vx, vy, vtheta])
+    skates = [
+        carnot.Scene.from_sympy(
+            [x, y, theta],
+            kinetic=v.T * v / 2,
+            constraints=vx * sympy.tan(theta) * sympy.sec(sympy.Integer(0)) - vy,
+            angles=[theta],
+            limits={theta: (-0.5, 0.5)},
+        ),
+        carnot.Scene.from_sympy(
+            [x, y, theta],
+            controls=[u, w],
+            rates=[
+                sympy.Eq(vx, u * sympy.cos(theta)),
+                sympy.Eq(vy, u * sympy.sin(theta)),
+                sympy.Eq(vtheta, w),
+            ],
+            cost=(u**2 + w**2) / 2,
+            angles=[theta],
+            limits={theta: (-0.5, 0.5)},
+        ),
+    ]
+    limited = unicycle.replace(limits={"theta": (-0.5, 0.5)})
+    action = limited.geodesics([0, 0, 0], [0, 0.3, 0]).best().action
+    for skate in skates:
+        best = skate.geodesics([0, 0, 0], [0, 0.3, 0]).best()
+        assert best.action == pytest.approx(action, rel=1e-8)
+
+
+@pytest.mark.parametrize(
+    "q, formulas, what",
+    [
+        ("xy", {}, "symbols"),
+        (["x"], {}, "symbols"),
+        ([], {}, "at least one"),
+        ([x, x], {"kinetic": vx**2}, "twice"),
+        ([x], {"kinetic": sympy.eye(2)}, "a matrix"),
+        ([x], {"controls": [y], "rates": [y, y], "cost": y**2}, "one for each"),
+        ([x], {"kinetic": vx**2, "parameters": {sympy.Symbol("k"): None}}, "k None"),
+    ],
+)
+def test_refuses_formulas(q, formulas, what):
+    with pytest.raises(ValueError, match=what):
+        carnot.Scene.from_sympy(q, **formulas)
 
 
 def test_refuses_what_the_language_has_no_word_for():

@@ -174,10 +174,26 @@ def test_refuses_in_the_words_of_the_program(start, goal, options, car, refusal)
     assert mine.replace(".0'", "'") == theirs
 
 
-@pytest.mark.parametrize("bad", [[[0, 0, 0, 0]], 3, [0, 0, 0, 1j], [0, 0, 0, [1]], [0, 0, 0, True]])
+@pytest.mark.parametrize("bad", [[[0, 0, 0, 0]], 3, b"0123", {0, 1, 2, 3}, None, np.array(1), [0, 0, 0, 1j], [0, 0, 0, [1]], [0, 0, 0, True]])
 def test_refuses_what_is_no_row_of_numbers(bad, car):
     with pytest.raises(ValueError, match="--to"):
         car.geodesics([0, 0, 0, 0], bad)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [{"all": "no"}, {"count": True}, {"samples": False}, {"mod_angles": 1}, {"progress": 3}],
+)
+def test_refuses_options_of_another_type(options, car):
+    with pytest.raises(ValueError, match=f"{next(iter(options)).replace('_', '-')}"):
+        car.geodesics([0, 0, 0, 0], [0, 1, 0, 0], **options)
+
+
+def test_the_same_search_twice_is_equal(car, parking):
+    again = car.geodesics(np.zeros(4), [0, 1, 0, 0], count=2)
+    assert again == parking
+    assert again.elapsed_seconds != parking.elapsed_seconds
+    assert carnot.scene("vehicle", **car.parameters) == car
 
 
 def test_takes_numbers_of_every_kind(car, parking):

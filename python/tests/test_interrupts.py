@@ -56,7 +56,7 @@ steer = carnot.scene("trailer3").steering()
 near, far = [0.5, 0, 0, 0, 0, 0], numpy.random.default_rng(0).uniform(-20, 20, (1000, 6))
 print("begun", flush=True)
 try:
-    steer.distance([0] * 6, far)
+    steer.distances([0] * 6, far)
 except KeyboardInterrupt:
     print("interrupted", flush=True)
 print(steer.distance([0] * 6, near), flush=True)
@@ -65,6 +65,79 @@ print(steer.distance([0] * 6, near), flush=True)
     process.send_signal(signal.SIGINT)
     out, _ = process.communicate(timeout=60)
     assert out.split() == ["interrupted", "0.5"]
+
+
+# What is thrown away with the scene that it was asked of.
+DROPPED = """
+import gc, os, signal, threading, carnot
+TEXT = "coordinates x, y, theta [angle]\\nparameters turning = 1 > 0\\n"
+TEXT += "kinetic = (x'^2 + y'^2 + turning theta'^2) / 2\\n0 = x' sin(theta) - y' cos(theta)\\n"
+def follow():
+    scene = carnot.Scene(TEXT)
+    best = scene.geodesics([0, 0, 0], [0, 1, 0]).best()
+    def stop(fraction):
+        raise KeyError
+    scene.follow(best, turning=1e-4, max_points=100000, tolerance=1e-13, progress=stop)
+print("begun", flush=True)
+for i in range(10):
+    try:
+        follow()
+    except KeyError:
+        pass
+    gc.collect()
+"""
+
+DAEMONS = """
+import threading, time, carnot, numpy
+scene = carnot.scene("unicycle")
+goals = numpy.random.default_rng(0).uniform(-3, 3, (50, 3))
+def work():
+    while True:
+        scene.solve_many([0, 0, 0], goals, threads=1)
+for i in range(4):
+    threading.Thread(target=work, daemon=True).start()
+print("begun", flush=True)
+time.sleep(0.3)
+"""
+
+FORKED = """
+import os, sys, threading, time, carnot
+print("begun", flush=True)
+def work():
+    LONG
+threading.Thread(target=work, daemon=True).start()
+time.sleep(0.3)
+child = os.fork()
+if child == 0:
+    best = carnot.scene("unicycle").geodesics([0, 0, 0], [0, 1, 0]).best()
+    sys.exit(0 if best.label == "locally-minimal" else 1)
+sys.exit(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+""".replace("LONG", LONG)
+
+LATE = """
+import atexit
+def late():
+    try:
+        scene.geodesics([0, 0, 0], [0, 1, 0])
+    except RuntimeError as error:
+        print(error, flush=True)
+atexit.register(late)
+import carnot
+scene = carnot.scene("unicycle")
+print("begun", flush=True)
+"""
+
+
+@pytest.mark.parametrize("script", [DROPPED, DAEMONS, FORKED], ids=["dropped", "daemons", "forked"])
+def test_ends_well(script):
+    for _ in range(3):
+        assert begun(script).wait(timeout=60) == 0
+
+
+def test_nothing_is_begun_when_the_interpreter_ends():
+    process = begun(LATE)
+    assert "ending" in process.communicate(timeout=60)[0]
+    assert process.returncode == 0
 
 
 def test_exit_while_a_thread_searches():
@@ -91,6 +164,7 @@ def test_callback_stops_the_work(call, unicycle):
     elif call == "many":
         answers = unicycle.solve_many(np.zeros(3), goals, progress=stop)
         assert not answers["solved"].all()
+        assert set(answers["reason"]) <= {"none", "interrupted"}
     else:
         field = unicycle.distance_field({"x": grid, "y": grid, "theta": grid}, progress=stop)
         assert not field.finished

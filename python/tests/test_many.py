@@ -113,7 +113,10 @@ def test_none_at_all(unicycle):
         (np.zeros((2, 3)), np.zeros((2, 3), object), {}, "real numbers"),
         (np.zeros((1, 2, 3)), np.zeros((1, 2, 3)), {}, "rows of 3"),
         (np.zeros((2, 3)), np.ones((2, 3)), {"time": [1, 2, 3]}, "time"),
+        (np.zeros((2, 3)), np.ones((2, 3)), {"time": [1, -1]}, "time"),
+        (np.zeros((2, 3)), np.ones((2, 3)), {"time": np.nan}, "time"),
         (np.zeros((2, 3)), np.ones((2, 3)), {"count": 0}, "--count"),
+        (np.zeros((2, 3)), np.ones((2, 3)), {"count": True}, "--count"),
         (np.zeros((2, 3)), np.ones((2, 3)), {"samples": 1}, "--trajectories"),
         (np.zeros((2, 3)), np.ones((2, 3)), {"free_goal": ["z"]}, "no such coordinate"),
     ],
@@ -121,11 +124,6 @@ def test_none_at_all(unicycle):
 def test_refuses(starts, goals, options, what, unicycle):
     with pytest.raises(ValueError, match=what):
         unicycle.solve_many(starts, goals, **options)
-
-
-def test_a_time_that_is_not_positive_fails_alone(unicycle):
-    answers = unicycle.solve_many(np.zeros(3), TARGETS[:2], time=[1, -1])
-    assert answers["solved"].tolist() == [True, False]
 
 
 @settings(max_examples=40, deadline=None)

@@ -113,8 +113,30 @@ def test_refuses_what_is_no_number_or_no_pair():
             carnot.scene("vehicle", length=bad)
     with pytest.raises(ValueError, match="no pair"):
         carnot.scene("vehicle", limits={"phi": 1})
-    with pytest.raises(ValueError, match="empty"):
-        carnot.Scene("  \n")
+    for bad in ("  \n", None, 3):
+        with pytest.raises(ValueError, match="is no scene"):
+            carnot.Scene(bad)
+    with pytest.raises(ValueError, match="is no name"):
+        carnot.scene(None)
+    for name, bad in (("limits", 3), ("discs", 3), ("discs", (1, 2, 3)), ("parameters", 3)):
+        with pytest.raises(ValueError, match="accepted"):
+            carnot.scene("vehicle", **{name: bad})
+    with pytest.raises(ValueError, match="--method"):
+        carnot.scene("vehicle", method=3)
+
+
+def test_obstacles_in_an_array():
+    discs = np.array([[3, 3, 0.1], [4, 4, 0.1]])
+    assert carnot.scene("vehicle", discs=discs).limits == carnot.scene(
+        "vehicle", discs=[(3, 3, 0.1), (4, 4, 0.1)]
+    ).limits
+
+
+def test_words_with_any_letters():
+    with pytest.raises(ValueError, match="scene:1:13"):
+        carnot.Scene("coordinates é")
+    with pytest.raises(ValueError, match="--limit"):
+        carnot.scene("vehicle", limits={"phi - θ": (-1, 1)})
 
 
 def test_is_a_value():
