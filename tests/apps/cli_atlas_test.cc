@@ -246,6 +246,43 @@ TEST_F(AtlasTest, FieldsAgreeWithSearches) {
   }
 }
 
+// Slices of a field, in three of which two geodesics are equally short somewhere.
+TEST_F(AtlasTest, DrawsSlicesOfAGrid) {
+  const Words grid{"atlas",
+                   "unicycle",
+                   "--from",
+                   "0,0,0",
+                   "--grid",
+                   "x=-3:3:25, y=-3:3:25, theta=-1:1:3",
+                   "--field",
+                   "--check",
+                   "0",
+                   "--output",
+                   "f.csv",
+                   "--plot",
+                   "f.svg"};
+  const Outcome outcome = sandbox.run(grid);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("written: f.svg"));
+  const std::string picture = text_of("f.svg");
+  EXPECT_THAT(picture, HasSubstr("a line every 0.5"));
+  EXPECT_THAT(picture, HasSubstr("cut locus"));
+  const Outcome smooth = sandbox.run({"atlas",
+                                      "unicycle",
+                                      "--from",
+                                      "0,0,0",
+                                      "--to",
+                                      "0,0,0.3",
+                                      "--grid",
+                                      "x=1:2:9, y=-0.5:0.5:9",
+                                      "--output",
+                                      "s.csv",
+                                      "--plot",
+                                      "s.svg"});
+  ASSERT_EQ(smooth.status, 0) << smooth.err;
+  EXPECT_THAT(text_of("s.svg"), Not(HasSubstr("cut locus")));
+}
+
 TEST_F(AtlasTest, RefusesBadInput) {
   const Words atlas{"atlas", "unicycle", "--output", "a.csv"};
   const auto refused = [&](const Words& more, const char* why) {
@@ -261,6 +298,7 @@ TEST_F(AtlasTest, RefusesBadInput) {
   refused({"--to", "0,0,0", "--grid", "x=0:1:2"}, "--from '': is missing");
   refused({"--problems", "none.csv"}, "No such file");
   refused({"--random", "3", "--field"}, "--grid");
+  refused({"--random", "3", "--plot", "a.png"}, "two axes");
   refused({"--from", "0,0,0", "--to", "0,0,0", "--grid", "x=0:1:2", "--field", "--count", "2"},
           "one geodesic");
   expect_refused({"atlas", "unicycle", "--random", "3"}, HasSubstr("--output"), sandbox);
