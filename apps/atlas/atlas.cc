@@ -2,30 +2,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <functional>
-#include <future>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <utility>
 
 #include "atlas/atlas_output.h"
 #include "atlas/atlas_plot.h"
 #include "atlas/atlas_record.h"
-#include "atlas/chunk_list.h"
+#include "atlas/crew.h"
 #include "atlas/journal.h"
 #include "atlas/models.h"
 #include "atlas/problem_list.h"
-#include "atlas/ranks.h"
 #include "carnot/shooting/solve_field.h"
 #include "carnot/shooting/solve_many.h"
 #include "catalogue/scene_choice.h"
 #include "run/delivery.h"
 #include "run/search_options.h"
 #include "run/subcommands.h"
-#include "text/interrupt.h"
 #include "text/numbers.h"
 #include "text/output_file.h"
 #include "text/progress_bar.h"
@@ -160,21 +155,27 @@ class Atlas {
   }
 
   int work() {
-    if (!call_.field) return work_on_list();
-    return ranks_.leads() ? work_on_field() : kSuccess;
+    Ranks ranks;  // nothing of the call is refused any more
+    if (!call_.field) return work_on_list(ranks);
+    return ranks.leads() ? work_on_field() : kSuccess;
   }
 
  private:
-  int work_on_list() {
+  int work_on_list(Ranks& ranks) {
     const auto began = std::chrono::steady_clock::now();
-    const long chunk = chunk_of(list_->size());
-    const long chunks = (list_->size() + chunk - 1) / chunk;
-    if (!ranks_.leads()) return follow(chunk);
-    const auto opened = open_journal(chunks);
+    const CrewWork work = crew_work(run_.threads > 0 ? run_.threads : ranks.threads());
+    if (!ranks.leads()) {
+      if (!ranks.agree(false)) return kSuccess;
+      return follow(ranks, work) ? kSuccess : kInterrupted;
+    }
+    const auto opened = open_journal(ranks, work.chunks());
     Journal& journal = *opened;
-    const long resumed = done(journal, chunk, chunks);
-    if (!lead(chunk, chunks, resumed, journal)) return interrupted_after(journal, chunk, chunks);
-    const Summary summary = write([&](const auto& visit) { for_records(journal, chunks, visit); });
+    const long resumed = work.done(journal);
+    if (!lead(ranks, work, journal, run_.destination.quiet)) {
+      return interrupted_after(journal, work);
+    }
+    const Summary summary =
+        write([&](const auto& visit) { for_records(journal, work.chunks(), visit); });
     journal.remove();
     Result result;
     result.json = summary_json(summary, resumed, journal.repaired());
@@ -273,32 +274,38 @@ class Atlas {
   }
 
   // Throws where there is none; the other ranks are told.
-  std::unique_ptr<Journal> open_journal(long chunks) {
+  std::unique_ptr<Journal> open_journal(Ranks& ranks, long chunks) const {
     try {
       auto journal = std::make_unique<Journal>(
           call_.output + ".journal", identity_of(call_, run_, *list_), chunks, call_.resume);
-      (void)ranks_.agree(true);
+      (void)ranks.agree(true);
       return journal;
     } catch (...) {
-      (void)ranks_.agree(false);
+      (void)ranks.agree(false);
       throw;
     }
   }
 
-  // How many problems the journal has the answers of.
-  [[nodiscard]] long done(const Journal& journal, long chunk, long chunks) const {
-    long count = 0;
-    for (long k = 0; k < chunks; ++k) {
-      if (journal.holds(k)) count += std::min(chunk, list_->size() - k * chunk);
-    }
-    return count;
+  // On so many threads of this process.
+  [[nodiscard]] CrewWork crew_work(int threads) const {
+    const long chunk = chunk_of(list_->size());
+    return {
+        list_->size(),
+        chunk,
+        [this, chunk, threads](const auto& next, const auto& hand_in, const Progress& progress) {
+          ManyOptions options;
+          options.each = options_;
+          options.threads = threads;
+          options.chunk = chunk;
+          options.next = next;
+          options.progress = progress;
+          return solve(options, hand_in);
+        }};
   }
 
-  // Solves the chunks that `next` gives, and hands in their records. False when stopped.
-  bool solve(long chunk,
-             const std::function<long()>& next,
-             const std::function<void(long k, const std::string& text)>& hand_in,
-             const Progress& progress) {
+  // Hands in the records of chunks. False when stopped.
+  bool solve(const ManyOptions& options,
+             const std::function<void(long chunk, const std::string& text)>& hand_in) const {
     ManyProblems problems;
     problems.count = list_->size();
     problems.at = [&](long i) {
@@ -307,12 +314,6 @@ class Atlas {
       check_ends(one.ends, dynamics);
       return problem_between(dynamics, one.ends);
     };
-    ManyOptions options;
-    options.each = options_;
-    options.threads = run_.threads > 0 ? run_.threads : ranks_.threads();
-    options.chunk = chunk;
-    options.next = next;
-    options.progress = progress;
     return solve_many(problems, options, [&](long first, std::span<const GeodesicReport> reports) {
       std::string text;
       for (std::size_t i = 0; i < reports.size(); ++i) {
@@ -320,65 +321,13 @@ class Atlas {
         text += json_line(atlas_record(index, problem(index), list_->parameters(), reports[i]));
         text += '\n';
       }
-      hand_in(first / chunk, text);
+      hand_in(first / options.chunk, text);
       return true;
     });
   }
 
-  // Rank 0: works on chunks and hands out others, until all are done. False when interrupted.
-  bool lead(long chunk, long chunks, long resumed, Journal& journal) {
-    ChunkList list(journal, chunks);
-    std::mutex mutex;
-    std::atomic<long> known{resumed};
-    const auto next = [&] { return list.next(); };
-    const auto take = [&](long k, std::string_view text) {
-      const std::lock_guard lock(mutex);
-      journal.append(k, text);
-      known += std::min(chunk, list_->size() - k * chunk);
-    };
-    const long left = std::max(1L, list_->size() - resumed);
-    ProgressBar bar("problems", static_cast<double>(left), run_.destination.quiet);
-    std::atomic<bool> failed{false};
-    const Progress progress = [&, tell = bar.callback()](double /*of the chunks of this rank*/) {
-      return !failed && tell(static_cast<double>(known - resumed) / static_cast<double>(left));
-    };
-    const auto work = [&] { return solve(chunk, next, take, progress); };
-    if (ranks_.size() == 1) return work();
-    auto own = std::async(std::launch::async, [&] {
-      try {
-        return work();
-      } catch (...) {
-        failed = true;
-        throw;
-      }
-    });
-    try {
-      ranks_.serve({next, take, [&] { return progress(0); }});
-    } catch (...) {
-      failed = true;  // the own work ends, too
-      own.wait();
-      throw;
-    }
-    return own.get() && known == list_->size();
-  }
-
-  // Another rank: asks for chunks until there are no more.
-  int follow(long chunk) {
-    if (!ranks_.agree(false)) return kSuccess;
-    const auto hand_in = [&](long k, const std::string& text) { ranks_.hand_in(k, text); };
-    try {
-      const auto ask = [&] { return ranks_.ask(); };
-      const bool finished = solve(chunk, ask, hand_in, [](double) { return !interrupted(); });
-      ranks_.leave();
-      return finished ? kSuccess : kInterrupted;
-    } catch (...) {
-      ranks_.leave();
-      throw;
-    }
-  }
-
-  int interrupted_after(Journal& journal, long chunk, long chunks) const {
-    const long known = done(journal, chunk, chunks);
+  int interrupted_after(Journal& journal, const CrewWork& work) const {
+    const long known = work.done(journal);
     if (known == 0) journal.remove();
     complain(fmt::format("{} of {} problems are done{}",
                          known,
@@ -437,7 +386,6 @@ class Atlas {
   std::unique_ptr<ProblemList> list_;
   std::unique_ptr<Models> models_;
   std::unique_ptr<AtlasPlot> plot_;  // where there is to be one
-  Ranks ranks_;                      // after all that may be refused
 };
 
 }  // namespace
