@@ -20,7 +20,7 @@ namespace {
 
 using namespace apps;
 
-using Handle = std::shared_ptr<const SteeringFunction>;
+using Handle = std::shared_ptr<SteeringFunction>;
 
 // What the search in this thread is told by the call that it is for.
 thread_local const Progress* asking = nullptr;
@@ -58,7 +58,7 @@ Handle make(const std::shared_ptr<Model>& model,
   steering.threads = std::max(1, run.threads);
   steering.memory = static_cast<std::size_t>(parse_integer("--memory", memory, 0, 1000000000));
   steering.goes_on = [] { return asking == nullptr || (*asking)(0); };
-  return std::make_shared<const SteeringFunction>(run.dynamics, steering);
+  return std::make_shared<SteeringFunction>(run.dynamics, steering);
 }
 
 // Ways of a question: {"found", "reason", "message", "distance", "q"} of each, with `samples` rows
@@ -147,39 +147,15 @@ py::array_t<double> distances(const Handle& self,
 }  // namespace
 
 void add_steering(py::module_& module) {
-  py::class_<SteeringFunction, std::shared_ptr<SteeringFunction>>(module, "Steering")
-      .def(py::init([](const std::shared_ptr<Model>& model,
-                       const Texts& options,
-                       bool mod_angles,
-                       const std::vector<bool>& free_target) {
-             return std::const_pointer_cast<SteeringFunction>(
-                 make(model, options, mod_angles, free_target));
-           }),
+  py::class_<SteeringFunction, Handle>(module, "Steering")
+      .def(py::init(&make),
            py::arg("model"),
            py::arg("options"),
            py::arg("mod_angles"),
            py::arg("free_goal"))
       .def_property_readonly("symmetric", &SteeringFunction::symmetric)
-      .def(
-          "ways",
-          [](const std::shared_ptr<SteeringFunction>& self,
-             const Array& from,
-             const Array& to,
-             int count,
-             long samples) { return ways(self, from, to, count, samples); },
-          py::arg("start"),
-          py::arg("goal"),
-          py::arg("count"),
-          py::arg("samples"))
-      .def(
-          "distances",
-          [](const std::shared_ptr<SteeringFunction>& self,
-             const Array& from,
-             const Array& to,
-             int threads) { return distances(self, from, to, threads); },
-          py::arg("starts"),
-          py::arg("goals"),
-          py::arg("threads"));
+      .def("ways", ways, py::arg("start"), py::arg("goal"), py::arg("count"), py::arg("samples"))
+      .def("distances", distances, py::arg("starts"), py::arg("goals"), py::arg("threads"));
 }
 
 }  // namespace carnot::python
