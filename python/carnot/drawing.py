@@ -110,7 +110,8 @@ def plot_field(field: Field, at: dict[str, float], ax: Any, levels: Any) -> Any:
         cuts.append(f"{name} = {values[nearest]:.3g}")
     if ax is None:
         ax = plt.figure().add_subplot()
-    drawn = ax.contour(field.axes[free[0]], field.axes[free[1]], field.distance[tuple(index)].T, levels)
+    x, y = (field.axes[name] for name in free)
+    drawn = ax.contour(x, y, field.distance[tuple(index)].T, levels)
     ax.clabel(drawn, fontsize="x-small")
     units = dict(zip(field.scene.coordinates, field.scene.units))
     ax.set_xlabel(with_unit(free[0], units[free[0]]))

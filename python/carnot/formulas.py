@@ -51,8 +51,8 @@ def scene_of(
         raise ValueError(f"q {q!r}: accepted: symbols, or functions of time, at least one")
     if len(set(q)) != len(q):
         raise ValueError(f"q {q!r}: a coordinate is there twice; accepted: each once")
-    if isinstance(constraints, (sympy.Basic, sympy.MatrixBase)):
-        constraints = list(constraints) if isinstance(constraints, sympy.MatrixBase) else [constraints]
+    if isinstance(constraints, sympy.Basic) and not isinstance(constraints, sympy.MatrixBase):
+        constraints = [constraints]
     printer = _Printer(q, velocities, controls)
     angle_names = {printer.coordinate(x) for x in angles}
     unit_names = {printer.coordinate(x): unit for x, unit in (units or {}).items()}

@@ -207,9 +207,9 @@ class Scene:
         12.5663706144
 
         A configuration has n numbers; None is a coordinate that is free. Options are those of
-        `carnot geodesic`, but that 0 `samples` leave trajectories out. `progress` is a function of the fraction done, which stops the search
-        where it returns False, or True for a bar. Ctrl-C raises KeyboardInterrupt within a few
-        hundredths of a second.
+        `carnot geodesic`, but that 0 `samples` leave trajectories out. `progress` is a function of
+        the fraction done, which stops the search where it returns False, or True for a bar. Ctrl-C
+        raises KeyboardInterrupt within a few hundredths of a second.
         """
         options = texts.option_texts(
             {
@@ -253,6 +253,8 @@ class Scene:
         **parameter: Real,
     ) -> Continuation:
         """Follows a geodesic while its goal, its start, the time or a parameter goes to a value.
+
+        Its ends are those that the geodesic has; none of their coordinates is free.
 
         >>> import carnot
         >>> car = carnot.scene("vehicle")
@@ -522,10 +524,15 @@ class Scene:
         """
         given = np.zeros(self.multipliers) if multipliers is None else multipliers
         return self._model.momentum(
-            numbers("q", q), numbers("velocity", velocity), numbers("multipliers", given), _real("t", t)
+            numbers("q", q),
+            numbers("velocity", velocity),
+            numbers("multipliers", given),
+            _real("t", t),
         )[0]
 
-    def verify(self, *, steps: Optional[Integer] = None, progress: Progress = None) -> dict[str, Any]:
+    def verify(
+        self, *, steps: Optional[Integer] = None, progress: Progress = None
+    ) -> dict[str, Any]:
         """What the method keeps on this scene, as `carnot verify` measures it.
 
         "as_declared" says whether order, symplectic form, time reversal, energy and constraints are
@@ -595,7 +602,8 @@ class Scene:
     def __repr__(self) -> str:
         values = ", ".join(f"{name} = {value:g}" for name, value in self.parameters.items())
         limits = "".join(f", {limit} limited" for limit in self.limits)
-        return f"<Scene {self.name}: {', '.join(self.coordinates)}; {values or 'no parameters'}{limits}>"
+        names = ", ".join(self.coordinates)
+        return f"<Scene {self.name}: {names}; {values or 'no parameters'}{limits}>"
 
 
 def _scene_of(

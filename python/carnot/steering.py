@@ -36,7 +36,8 @@ class Steering:
     """Distances and paths, with answers kept.
 
     A call takes a tenth of a millisecond besides its searches, and a microsecond for each row whose
-    answer is known: ask for many rows at once. Calls may come from many threads at once. Made by `Scene.steering`.
+    answer is known: ask for many rows at once. Calls may come from many threads at once. Made by
+    `Scene.steering`.
     """
 
     def __init__(
@@ -71,7 +72,10 @@ class Steering:
         [True, True]
         """
         ways = self._core.ways(
-            numbers("start", start), numbers("goal", goal), _whole("count", count), _whole("samples", samples)
+            numbers("start", start),
+            numbers("goal", goal),
+            _whole("count", count),
+            _whole("samples", samples),
         )
         return [Way(**way) for way in ways]
 
@@ -114,7 +118,6 @@ class Steering:
 
     def __repr__(self) -> str:
         return f"<Steering of {self._scene.name}>"
-
 
 
 def _whole(name: str, value: Any) -> int:

@@ -72,7 +72,9 @@ def limit_texts(limits: Limits) -> list[str]:
     if isinstance(limits, str):
         return [limits]
     if not isinstance(limits, (Mapping, Sequence)):
-        raise ValueError(f"--limit {limits!r}: accepted: {{'EXPRESSION': (lower, upper)}}, or texts")
+        raise ValueError(
+            f"--limit {limits!r}: accepted: {{'EXPRESSION': (lower, upper)}}, or texts"
+        )
     if not isinstance(limits, Mapping):
         return [str(limit) for limit in limits]
     texts = []

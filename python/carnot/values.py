@@ -30,8 +30,10 @@ def same(a: Any, b: Any) -> bool:
 
 
 class Value:
-    """A dataclass whose fields may be arrays. It equals another one where all its fields do, but for
-    the seconds that it took."""
+    """A dataclass whose fields may be arrays.
+
+    It equals another one where all its fields do, but for the seconds that it took.
+    """
 
     __hash__ = None  # type: ignore[assignment]
 

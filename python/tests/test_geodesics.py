@@ -174,7 +174,20 @@ def test_refuses_in_the_words_of_the_program(start, goal, options, car, refusal)
     assert mine.replace(".0'", "'") == theirs
 
 
-@pytest.mark.parametrize("bad", [[[0, 0, 0, 0]], 3, b"0123", {0, 1, 2, 3}, None, np.array(1), [0, 0, 0, 1j], [0, 0, 0, [1]], [0, 0, 0, True]])
+@pytest.mark.parametrize(
+    "bad",
+    [
+        [[0, 0, 0, 0]],
+        3,
+        b"0123",
+        {0, 1, 2, 3},
+        None,
+        np.array(1),
+        [0, 0, 0, 1j],
+        [0, 0, 0, [1]],
+        [0, 0, 0, True],
+    ],
+)
 def test_refuses_what_is_no_row_of_numbers(bad, car):
     with pytest.raises(ValueError, match="--to"):
         car.geodesics([0, 0, 0, 0], bad)
