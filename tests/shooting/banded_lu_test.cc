@@ -13,8 +13,9 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 TEST(BandedLu, AgreesWithADenseSolver) {
   constexpr int kSize = 30;
-  for (const int below : {1, 4, 9}) {
-    for (const int above : {2, 9}) {
+  // One to five blocks of eight beside the pivot.
+  for (const int below : {1, 4, 9, 15, 20}) {
+    for (const int above : {2, 9, 15}) {
       std::mt19937 random(7);
       std::uniform_real_distribution<double> uniform(-1, 1);
       BandedLu banded(kSize, below, above);
