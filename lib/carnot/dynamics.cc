@@ -70,6 +70,37 @@ void Dynamics::discrete_lagrangian(double h,
                               hessian.empty() ? nullptr : hessian.data());
 }
 
+bool Dynamics::midpoints(std::span<const double> qm,
+                         std::span<const double> v,
+                         std::span<double> terms,
+                         std::span<double> jacobian) const {
+  static_assert(kMidpointLanes == kTranscriptionLanes);
+  assert(has_transcription() && std::ssize(qm) == dof * kMidpointLanes && v.size() == qm.size());
+  assert(std::ssize(terms) == (dof + transcribed + 1) * kMidpointLanes);
+  assert(jacobian.empty() || std::ssize(jacobian) == std::ssize(terms) * 2 * dof);
+  return packed_midpoint_terms(*transcription,
+                               system.get(),
+                               qm.data(),
+                               v.data(),
+                               terms.data(),
+                               jacobian.empty() ? nullptr : jacobian.data());
+}
+
+void Dynamics::discrete_lagrangians(double h,
+                                    std::span<const double> x,
+                                    std::span<double> gradient,
+                                    std::span<double> hessian) const {
+  assert(has_transcription() && std::ssize(x) == (2 * dof + transcribed) * kMidpointLanes);
+  assert(gradient.size() == x.size());
+  assert(hessian.empty() || hessian.size() == x.size() * (2 * dof + transcribed));
+  packed_discrete_lagrangian(*transcription,
+                             system.get(),
+                             h,
+                             x.data(),
+                             gradient.data(),
+                             hessian.empty() ? nullptr : hessian.data());
+}
+
 void Dynamics::midpoint_multipliers(std::span<const double> q,
                                     std::span<const double> p,
                                     std::span<double> lambda) const {

@@ -169,6 +169,13 @@ struct Dynamics {
                               std::span<const double> v,
                               std::span<double> terms,
                               std::span<double> jacobian = {}) const;
+  // The same for kMidpointLanes intervals side by side: number i of interval l is at
+  // i * kMidpointLanes + l of each array. False where one of them fails. Several times as fast.
+  static constexpr int kMidpointLanes = 8;
+  [[nodiscard]] bool midpoints(std::span<const double> qm,
+                               std::span<const double> v,
+                               std::span<double> terms,
+                               std::span<double> jacobian = {}) const;
   // Gradient and Hessian of the discrete Lagrangian F_d with respect to x = (q0, q1, lambda), of
   // length 2n + k: the discrete momenta are p0 = -gradient[0..n), p1 = gradient[n..2n). The Hessian
   // is symmetric, (2n + k)^2, or empty where it is not wanted.
@@ -176,6 +183,11 @@ struct Dynamics {
                            std::span<const double> x,
                            std::span<double> gradient,
                            std::span<double> hessian = {}) const;
+  // The same for kMidpointLanes intervals side by side.
+  void discrete_lagrangians(double h,
+                            std::span<const double> x,
+                            std::span<double> gradient,
+                            std::span<double> hessian = {}) const;
   // The multipliers of the transcription at a phase point.
   void midpoint_multipliers(std::span<const double> q,
                             std::span<const double> p,

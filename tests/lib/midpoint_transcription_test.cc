@@ -283,6 +283,122 @@ struct Separate {
   static constexpr TranscriptionFunctions kFunctions = {n, 1, false, entries, hessian};
 };
 
+// Numbers of kTranscriptionLanes intervals side by side, `count` of each.
+using Packed = std::vector<double>;
+Packed packed(int count) { return Packed(static_cast<std::size_t>(count) * kTranscriptionLanes); }
+std::vector<double> lane(const Packed& from, int l) {
+  std::vector<double> own;
+  for (std::size_t i = l; i < from.size(); i += kTranscriptionLanes) own.push_back(from[i]);
+  return own;
+}
+// The packed sine and cosine are good to 2 ulp, and sums are contracted in another way; that is
+// enlarged by the condition of M and of F'F, which is up to a hundred.
+constexpr double kPackedRoundOff = 1000 * kEps;
+void expect_same(const std::vector<double>& a, const std::vector<double>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  double size = 1;
+  for (const double x : b) size = std::max(size, std::abs(x));
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], kPackedRoundOff * size);
+}
+
+// Eight intervals side by side against one by one. An angle for which packs have no sine is in one
+// of them, in every second sample.
+TYPED_TEST(MidpointDerivativesTest, SideBySideIsOneByOne) {
+  constexpr int n = TypeParam::kDof;
+  constexpr int kTerms = TestFixture::kTerms;
+  constexpr int m = TestFixture::kUnknowns;
+  constexpr double kFar = 4e6;
+  constexpr double h = 0.3;
+  const TranscriptionFunctions& f = this->calls_.functions();
+  ASSERT_NE(f.packed_entries, nullptr);
+  for (int sample = 0; sample < 10; ++sample) {
+    Packed x = packed(m);
+    for (int l = 0; l < kTranscriptionLanes; ++l) {
+      const auto own = test::random_vector<m>(this->generator_);
+      for (int i = 0; i < m; ++i) x[i * kTranscriptionLanes + l] = own[i];
+    }
+    if (sample % 2 == 1) {
+      // Both ends of interval 5, of the last coordinate.
+      x[(n - 1) * kTranscriptionLanes + 5] += kFar;
+      x[(2 * n - 1) * kTranscriptionLanes + 5] += kFar;
+    }
+    const double* const v = x.data() + n * kTranscriptionLanes;
+    Packed terms = packed(kTerms), slopes = packed(kTerms * 2 * n), again = packed(kTerms);
+    Packed gradient = packed(m), hessian = packed(m * m), first = packed(m);
+    ASSERT_TRUE(packed_midpoint_terms(f, &this->calls_, x.data(), v, terms.data(), slopes.data()));
+    ASSERT_TRUE(packed_midpoint_terms(f, &this->calls_, x.data(), v, again.data(), nullptr));
+    packed_discrete_lagrangian(f, &this->calls_, h, x.data(), gradient.data(), hessian.data());
+    packed_discrete_lagrangian(f, &this->calls_, h, x.data(), first.data(), nullptr);
+    for (int l = 0; l < kTranscriptionLanes; ++l) {
+      const std::vector<double> own = lane(x, l);
+      std::vector<double> a(kTerms), b(kTerms * 2 * n), c(m), d(m * m);
+      ASSERT_TRUE(this->calls_.midpoint(own.data(), own.data() + n, a.data(), b.data()));
+      expect_same(lane(terms, l), a);
+      expect_same(lane(again, l), a);
+      expect_same(lane(slopes, l), b);
+      this->calls_.discrete_lagrangian(h, own.data(), c.data(), d.data());
+      expect_same(lane(gradient, l), c);
+      expect_same(lane(first, l), c);
+      expect_same(lane(hessian, l), d);
+    }
+  }
+}
+
+// One interval that cannot be evaluated is told, and the others are right all the same.
+TYPED_TEST(MidpointDerivativesTest, OneFailureSideBySideDoesNotSpoilTheOthers) {
+  constexpr int n = TypeParam::kDof;
+  constexpr int kTerms = TestFixture::kTerms;
+  constexpr int kBroken = 3;
+  Packed x = packed(2 * n);
+  for (double& number : x) number = std::uniform_real_distribution<double>(-1, 1)(this->generator_);
+  for (int j = 0; j < n; ++j) {
+    x[j * kTranscriptionLanes + kBroken] = std::numeric_limits<double>::quiet_NaN();
+  }
+  Packed terms = packed(kTerms);
+  const double* const v = x.data() + n * kTranscriptionLanes;
+  const bool good = packed_midpoint_terms(
+      this->calls_.functions(), &this->calls_, x.data(), v, terms.data(), nullptr);
+  for (int l = 0; l < kTranscriptionLanes; ++l) {
+    const std::vector<double> own = lane(x, l);
+    std::vector<double> a(kTerms);
+    const bool found = this->calls_.midpoint(own.data(), own.data() + n, a.data(), nullptr);
+    if (l == kBroken) {
+      EXPECT_EQ(good, found);
+      continue;
+    }
+    ASSERT_TRUE(found);
+    expect_same(lane(terms, l), a);
+  }
+}
+
+// A scene that has no formulas for packs, and one with more coordinates than packs are made for.
+template <int n>
+void expect_one_by_one() {
+  constexpr int kTerms = n + 2;
+  constexpr int m = 2 * n + 1;
+  const TranscriptionFunctions& f = Separate<n>::kFunctions;
+  test::Generator generator(n);
+  Packed x = packed(m);
+  for (double& number : x) number = std::uniform_real_distribution<double>(-1, 1)(generator);
+  Packed terms = packed(kTerms), slopes = packed(kTerms * 2 * n), gradient = packed(m);
+  const double* const v = x.data() + n * kTranscriptionLanes;
+  ASSERT_TRUE(packed_midpoint_terms(f, nullptr, x.data(), v, terms.data(), slopes.data()));
+  packed_discrete_lagrangian(f, nullptr, 0.5, x.data(), gradient.data(), nullptr);
+  for (int l = 0; l < kTranscriptionLanes; ++l) {
+    const std::vector<double> own = lane(x, l);
+    std::vector<double> a(kTerms), b(kTerms * 2 * n), c(m);
+    ASSERT_TRUE(midpoint_terms(f, nullptr, own.data(), own.data() + n, a.data(), b.data()));
+    EXPECT_EQ(lane(terms, l), a);
+    EXPECT_EQ(lane(slopes, l), b);
+    discrete_lagrangian(f, nullptr, 0.5, own.data(), c.data(), nullptr);
+    EXPECT_EQ(lane(gradient, l), c);
+  }
+}
+TEST(MidpointRows, WithoutPacksAreOneByOne) {
+  expect_one_by_one<7>();
+  expect_one_by_one<16>();
+}
+
 template <int n>
 void expect_exact_derivatives() {
   constexpr int kTerms = n + 2;

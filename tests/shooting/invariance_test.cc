@@ -317,6 +317,37 @@ TEST_P(RescaledTranscription, HasConsistentDerivatives) {
   }
 }
 
+// Intervals side by side are those one by one, in units that are not the scene's.
+TEST_P(RescaledTranscription, IsTheSameSideBySide) {
+  // Packs contract sums in another way; the condition of M and of F'F is below a hundred.
+  constexpr double kPacked = 1000 * std::numeric_limits<double>::epsilon();
+  constexpr int kLanes = Dynamics::kMidpointLanes;
+  const Subject& subject = GetParam();
+  const std::vector<double> from{0.3, 0.4, 0.5, 0.2};
+  const std::vector<double> to{0.9, 0.7, 0.6, 0.1};
+  const auto n = static_cast<long>(subject.sizes.size());
+  const BoundaryValueProblem own = problem_in(
+      subject, {from.begin(), from.begin() + n}, {to.begin(), to.begin() + n}, {7, 3, 5});
+  const BoundaryValueProblem problem = rescaled(own, natural_scales(own));
+  const std::size_t m = 2 * n + problem.dynamics.transcribed;
+  std::vector<double> x(m * kLanes), gradient(x.size()), hessian(m * x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::sin(1.0 + i) + (i < x.size() / 2 ? 2 : 0);
+  problem.dynamics.discrete_lagrangians(0.1, x, gradient, hessian);
+  for (int l = 0; l < kLanes; ++l) {
+    std::vector<double> at(m), first(m), second(m * m);
+    for (std::size_t i = 0; i < m; ++i) at[i] = x[i * kLanes + l];
+    problem.dynamics.discrete_lagrangian(0.1, at, first, second);
+    double size = 1;
+    for (const double entry : second) size = std::max(size, std::abs(entry));
+    for (std::size_t i = 0; i < m; ++i) {
+      EXPECT_NEAR(gradient[i * kLanes + l], first[i], kPacked * size);
+    }
+    for (std::size_t i = 0; i < m * m; ++i) {
+      EXPECT_NEAR(hessian[i * kLanes + l], second[i], kPacked * size);
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, RescaledTest, ::testing::ValuesIn(subjects()), name_of);
 
 INSTANTIATE_TEST_SUITE_P(Scenes, RescaledTranscription, ::testing::ValuesIn(driftless()), name_of);

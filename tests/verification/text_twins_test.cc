@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <random>
 #include <span>
@@ -220,6 +221,47 @@ TEST_P(TextTwins, TurnsVelocitiesIntoTheSameMomenta) {
   }
 }
 
+// Random points side by side have the entries and Hessians that they have one by one.
+void expect_side_by_side(const TranscriptionFunctions& f,
+                         const void* system,
+                         const GaugeUnits& units,
+                         const std::function<std::vector<double>(int)>& random) {
+  constexpr int kLanes = kTranscriptionLanes;
+  constexpr double kTolerance = 100 * kRoundOff;
+  const int n = f.dof;
+  const std::vector<double> q = random(n * kLanes);
+  const std::vector<double> v = random(n * kLanes);
+  const std::vector<double> lambda = random(f.constraints * kLanes);
+  const auto lane = [](const std::vector<double>& from, int l) {
+    std::vector<double> own;
+    for (std::size_t i = l; i < from.size(); i += kLanes) own.push_back(from[i]);
+    return own;
+  };
+  const auto size = [](int count) { return static_cast<std::size_t>(count) * kLanes; };
+  std::vector<double> slopes(size(entry_count(f) * (1 + n)));
+  std::vector<double> values(size(entry_count(f)));
+  std::vector<double> hessian(size(n * n));
+  f.packed_entries(system, q.data(), units, true, slopes.data());
+  f.packed_entries(system, q.data(), units, false, values.data());
+  f.packed_hessian(system, q.data(), v.data(), lambda.data(), units, hessian.data());
+  for (int l = 0; l < kLanes; ++l) {
+    std::vector<double> rows(static_cast<std::size_t>(entry_count(f)) * row_length(n));
+    f.entries(system, lane(q, l).data(), units, true, rows.data());
+    std::vector<double> known;
+    for (int i = 0; i < entry_count(f); ++i) {
+      known.insert(known.end(), &rows[i * row_length(n)], &rows[i * row_length(n)] + 1 + n);
+    }
+    EXPECT_LE(distance(lane(slopes, l), known), kTolerance * (1 + largest(known)));
+    std::vector<double> entries(static_cast<std::size_t>(entry_count(f)));
+    f.entries(system, lane(q, l).data(), units, false, entries.data());
+    EXPECT_LE(distance(lane(values, l), entries), kTolerance * (1 + largest(entries)));
+    std::vector<double> second(static_cast<std::size_t>(n * n));
+    const auto own = [&](const std::vector<double>& x) { return lane(x, l); };
+    f.hessian(system, own(q).data(), own(v).data(), own(lambda).data(), units, second.data());
+    EXPECT_LE(distance(lane(hessian, l), second), kTolerance * (1 + largest(second)));
+  }
+}
+
 // The entries of the transcription and the Hessian of its Lagrangian, in several units of a gauge.
 TEST_P(TextTwins, IsTranscribedAlike) {
   ASSERT_EQ(text_.has_transcription(), twin_.has_transcription());
@@ -246,6 +288,9 @@ TEST_P(TextTwins, IsTranscribedAlike) {
       g.entries(twin_.system.get(), q.data(), units, slopes, b.data());
       EXPECT_LE(distance(a, b), kTolerance * (1 + largest(b)));
     }
+    const auto numbers = [this](int count) { return random(count); };
+    expect_side_by_side(f, text_.system.get(), units, numbers);
+    if (g.packed_entries != nullptr) expect_side_by_side(g, twin_.system.get(), units, numbers);
     std::vector<double> a(static_cast<std::size_t>(n * n));
     std::vector<double> b(a.size());
     f.hessian(text_.system.get(), q.data(), v.data(), lambda.data(), units, a.data());

@@ -444,6 +444,16 @@ void entries(
   const UnitInputs in(units, s.dof);
   const Tape& tape = slopes ? s.slopes : s.entries;
   tape.run(at(in.weight, q, in.per_unit.data(), kIdle.data()), std::array<double*, 1>{out});
+  if (!slopes) return;
+  // From the last row to the first, since they come to stand further apart.
+  const int known = 1 + s.dof;
+  const int length = row_length(s.dof);
+  for (int row = entry_count(s.transcription) - 1; row >= 0; --row) {
+    if (row > 0) {
+      std::copy_backward(out + row * known, out + (row + 1) * known, out + row * length + known);
+    }
+    std::fill(out + row * length + known, out + (row + 1) * length, 0.0);
+  }
 }
 
 void lagrangian_hessian(const void* opaque,
@@ -458,10 +468,52 @@ void lagrangian_hessian(const void* opaque,
                            std::array<double*, 1>{l_qq});
 }
 
+// The same for points side by side.
+struct PackedUnitInputs {
+  std::array<double, kMostDof * kLanes> per_unit;
+  std::array<double, kLanes> weight;
+
+  PackedUnitInputs(const GaugeUnits& units, int n) {
+    const UnitInputs one(units, n);
+    weight.fill(one.weight);
+    for (int j = 0; j < n; ++j) std::fill_n(&per_unit[j * kLanes], kLanes, one.per_unit[j]);
+  }
+};
+
+void packed_entries(
+    const void* opaque, const double* q, const GaugeUnits& units, bool slopes, double* out) {
+  const TextSystem& s = system_of(opaque);
+  const PackedUnitInputs in(units, s.dof);
+  const Tape& tape = slopes ? s.slopes : s.entries;
+  tape.run_rows(
+      Groups{in.weight.data(), q, in.per_unit.data(), kIdle.data(), kIdle.data(), kIdle.data()},
+      std::array<double*, 1>{out});
+}
+
+void packed_hessian(const void* opaque,
+                    const double* q,
+                    const double* v,
+                    const double* lambda,
+                    const GaugeUnits& units,
+                    double* l_qq) {
+  const TextSystem& s = system_of(opaque);
+  const PackedUnitInputs in(units, s.dof);
+  s.lagrangian_hessian.run_rows(
+      Groups{in.weight.data(), q, in.per_unit.data(), kIdle.data(), v, lambda},
+      std::array<double*, 1>{l_qq});
+}
+
 }  // namespace
 
 void connect_dynamics(TextSystem& system) {
-  system.transcription = {system.dof, system.transcribed, false, entries, lagrangian_hessian};
+  static_assert(kLanes == kTranscriptionLanes);
+  system.transcription = {system.dof,
+                          system.transcribed,
+                          false,
+                          entries,
+                          lagrangian_hessian,
+                          packed_entries,
+                          packed_hessian};
   Dynamics::Calls& calls = system.calls;
   if (system.has_chart) calls.chart = chart;
   if (system.holonomic_count > 0) {

@@ -245,9 +245,8 @@ class TapeMaker {
     SymbolicVector rows;
     for (const Expression& e : entries) {
       rows.push_back(e);
-      for (int d = 1; d < row_length(n_); ++d) {
-        rows.push_back(d <= n_ ? graph_.derivative(e, kConfiguration.first + d - 1)
-                               : graph_.number(0));
+      for (int d = 0; d < n_; ++d) {
+        rows.push_back(graph_.derivative(e, kConfiguration.first + d));
       }
     }
     system_.entries = tape({entries});

@@ -64,8 +64,8 @@ struct AdmissibleVelocities {
   // l = v'M v/2 - lambda'C v - lambda'P lambda/2.
   template <class T>
   [[nodiscard]] T gauged_lagrangian(const Vector<T, kDof>& q,
-                                    const Vector<double, kDof>& v,
-                                    const Vector<double, kDof>& lambda) const {
+                                    const Vector<T, kDof>& v,
+                                    const Vector<T, kDof>& lambda) const {
     using Controls = Vector<T, kControls>;
     const Matrix<T, kDof, kControls> f = frame(q);
     const Cholesky<T, kControls> square(regular_square(f));
@@ -74,7 +74,8 @@ struct AdmissibleVelocities {
     const Controls w_l = square.solve(b);
     Controls rw = w;
     if constexpr (HasControlWeight<Scene>) rw = product(scene.control_weight(q), w);
-    return 0.5 * (dot(w, rw) - weight * dot(b, w_l)) + dot(b, w) - lambda.dot(v);
+    const T energy = dot(w, rw) - constant<T>(weight) * dot(b, w_l);
+    return constant<T>(0.5) * energy + dot(b, w) - dot(lambda, v);
   }
 
  private:
@@ -91,7 +92,7 @@ struct AdmissibleVelocities {
   // F'x.
   template <class T>
   static Vector<T, kControls> transposed_times(const Matrix<T, kDof, kControls>& f,
-                                               const Vector<double, kDof>& x) {
+                                               const Vector<T, kDof>& x) {
     Vector<T, kControls> sum = Vector<T, kControls>::Constant(constant<T>(0));
     for (int i = 0; i < kDof; ++i) {
       for (int j = 0; j < kControls; ++j) sum[j] += f(i, j) * x[i];

@@ -37,6 +37,21 @@ void discrete_lagrangian(const TranscriptionFunctions& functions,
                          double* gradient,
                          double* hessian);
 
+// The same two for kTranscriptionLanes intervals side by side: number i of interval l is at
+// i * kTranscriptionLanes + l of each array. Four to six times as fast as one by one.
+[[nodiscard]] bool packed_midpoint_terms(const TranscriptionFunctions& functions,
+                                         const void* system,
+                                         const double* qm,
+                                         const double* v,
+                                         double* terms,
+                                         double* jacobian);
+void packed_discrete_lagrangian(const TranscriptionFunctions& functions,
+                                const void* system,
+                                double h,
+                                const double* x,
+                                double* gradient,
+                                double* hessian);
+
 // With a gauge: the multipliers at (q, p), for which C lambda = -C p, C = G the projector.
 void gauged_multipliers(const TranscriptionFunctions& functions,
                         const void* system,

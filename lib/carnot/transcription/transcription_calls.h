@@ -1,10 +1,12 @@
 // A scene behind the function pointers of transcription_functions.h.
 #pragma once
 
+#include <array>
 #include <concepts>
 #include <type_traits>
 
 #include "carnot/numerics/gradient.h"
+#include "carnot/numerics/pack.h"
 #include "carnot/system/index_one_system.h"
 #include "carnot/system/optimal_control.h"
 #include "carnot/system/velocity_constraints.h"
@@ -54,17 +56,28 @@ concept HasGauge = requires(const S& scene, const Vector<double, S::kDof>& q) {
   { scene.gauge(q) } -> std::convertible_to<Matrix<double, S::kMultipliers, S::kMultipliers>>;
 };
 
-// The functions of TranscriptionFunctions for B, a SystemOnBranch.
+// Writes a number, or a pack of them, and moves on.
+inline void write_number(double x, double*& to) { *to++ = x; }
+template <int W, class Lane>
+void write_number(const Pack<W, Lane>& x, double*& to) {
+  x.store(to);
+  to += W;
+}
+
+// The functions of TranscriptionFunctions for B, a SystemOnBranch. Rows of plain numbers are
+// filled.
 template <class Scene, class T>
 void write_entries(const VelocityConstraints<Scene>& system,
                    const Vector<T, Scene::kDof>& q,
                    double* out) {
   static_assert(Scene::kDof < kLongestRow);
   const auto write = [&](const T& x) {
-    *out++ = value_of(x);
+    write_number(value_of(x), out);
     if constexpr (kIsJet<T>) {
-      for (int d = 0; d < Scene::kDof; ++d) *out++ = x.v[d];
-      for (int d = Scene::kDof + 1; d < row_length(Scene::kDof); ++d) *out++ = 0;
+      for (int d = 0; d < Scene::kDof; ++d) write_number(x.v[d], out);
+      if constexpr (std::is_same_v<typename T::Scalar, double>) {
+        for (int d = Scene::kDof + 1; d < row_length(Scene::kDof); ++d) *out++ = 0;
+      }
     }
   };
   const Matrix<T, Scene::kDof, Scene::kDof> mass = system.scene().mass(q);
@@ -93,34 +106,45 @@ void transcription_entries(
   });
 }
 
-// l is linear in M, G and V, so that no product of Jets is formed.
-template <class Transcribed>
-void lagrangian_hessian(const VelocityConstraints<Transcribed>& system,
-                        const double* q,
-                        const double* v,
-                        const double* lambda,
-                        double* l_qq) {
-  constexpr int n = Transcribed::kDof;
-  using T = Jet<Jet<double, n>, n>;
-  const auto& scene = system.scene();
-  using Scene = Transcribed;
-  constexpr int k = Scene::kMultipliers;
-  const Vector<T, n> x = seeded(seeded(Vector<double, n>(view<n>(q))));
-  for (int d = 0; d < n * n; ++d) l_qq[d] = 0;
-  const auto add = [&](const T& entry, double weight) {
-    for (int d = 0; d < n; ++d) {
-      for (int e = 0; e < n; ++e) l_qq[d * n + e] += weight * entry.v[d].v[e];
+template <class B>
+void transcription_packed_entries(
+    const void* opaque, const double* q, const GaugeUnits& units, bool slopes, double* out) {
+  using P = Pack<kTranscriptionLanes>;
+  Vector<P, B::n> at;
+  for (int j = 0; j < B::n; ++j) at[j] = P::load(q + j * kTranscriptionLanes);
+  with_units(B::from(opaque).system, units, [&](const auto& system) {
+    if (slopes) {
+      write_entries(system, seeded(at), out);
+    } else {
+      write_entries(system, at, out);
     }
-  };
+  });
+}
+
+// Calls add(entry, weight) with what sums up to l at x, which has second derivatives. l is linear
+// in M, G and V, so that no product of Jets is formed. v and lambda are numbers N.
+template <class Scene, class T, class N, class Add>
+void add_lagrangian(const VelocityConstraints<Scene>& system,
+                    const Vector<T, Scene::kDof>& x,
+                    const N* v,
+                    const N* lambda,
+                    const Add& add) {
+  constexpr int n = Scene::kDof;
+  constexpr int k = Scene::kMultipliers;
+  const auto& scene = system.scene();
   if constexpr (HasGauge<Scene>) {
-    add(scene.gauged_lagrangian(
-            x, Vector<double, n>(view<n>(v)), Vector<double, n>(view<n>(lambda))),
-        1);
+    Vector<T, n> velocity;
+    Vector<T, n> multipliers;
+    for (int i = 0; i < n; ++i) {
+      velocity[i] = T(typename T::Scalar(v[i]));
+      multipliers[i] = T(typename T::Scalar(lambda[i]));
+    }
+    add(scene.gauged_lagrangian(x, velocity, multipliers), N(1));
   } else {
-    if constexpr (HasPotential<Scene>) add(system.potential(x), -1);
+    if constexpr (HasPotential<Scene>) add(system.potential(x), N(-1));
     const Matrix<T, n, n> mass = scene.mass(x);
     for (int i = 0; i < n; ++i) {
-      for (int j = 0; j <= i; ++j) add(mass(i, j), (j < i ? 1 : 0.5) * v[i] * v[j]);
+      for (int j = 0; j <= i; ++j) add(mass(i, j), N(j < i ? 1 : 0.5) * v[i] * v[j]);
     }
     if constexpr (k > 0) {
       const Matrix<T, k, n> rows = scene.constraints(x);
@@ -128,6 +152,56 @@ void lagrangian_hessian(const VelocityConstraints<Transcribed>& system,
         for (int j = 0; j < n; ++j) add(rows(i, j), -lambda[i] * v[j]);
       }
     }
+  }
+}
+
+template <class Scene>
+void lagrangian_hessian(const VelocityConstraints<Scene>& system,
+                        const double* q,
+                        const double* v,
+                        const double* lambda,
+                        double* l_qq) {
+  constexpr int n = Scene::kDof;
+  using T = Jet<Jet<double, n>, n>;
+  const Vector<T, n> x = seeded(seeded(Vector<double, n>(view<n>(q))));
+  for (int d = 0; d < n * n; ++d) l_qq[d] = 0;
+  add_lagrangian(system, x, v, lambda, [&](const T& entry, double weight) {
+    for (int d = 0; d < n; ++d) {
+      for (int e = 0; e < n; ++e) l_qq[d * n + e] += weight * entry.v[d].v[e];
+    }
+  });
+}
+
+// The same of points side by side, column by column: Jets of Jets of packs in all directions at
+// once would fill the stack.
+template <class Scene>
+void packed_lagrangian_hessian(const VelocityConstraints<Scene>& system,
+                               const double* q,
+                               const double* v,
+                               const double* lambda,
+                               double* l_qq) {
+  constexpr int n = Scene::kDof;
+  constexpr int k = Scene::kMultipliers;
+  constexpr int kLanes = kTranscriptionLanes;
+  using P = Pack<kLanes>;
+  using Inner = Jet<P, 1>;
+  using T = Jet<Inner, n>;
+  std::array<P, n> velocity;
+  std::array<P, k> multipliers;
+  for (int j = 0; j < n; ++j) velocity[j] = P::load(v + j * kLanes);
+  for (int i = 0; i < k; ++i) multipliers[i] = P::load(lambda + i * kLanes);
+  for (int e = 0; e < n; ++e) {
+    Vector<Inner, n> at;
+    for (int j = 0; j < n; ++j) {
+      const P value = P::load(q + j * kLanes);
+      at[j] = j == e ? Inner(value, 0) : Inner(value);
+    }
+    std::array<P, n> column{};
+    const auto add = [&](const T& entry, const P& weight) {
+      for (int d = 0; d < n; ++d) column[d] += weight * entry.v[d].v[0];
+    };
+    add_lagrangian(system, seeded(at), velocity.data(), multipliers.data(), add);
+    for (int d = 0; d < n; ++d) column[d].store(l_qq + (d * n + e) * kLanes);
   }
 }
 
@@ -144,13 +218,32 @@ void transcription_hessian(const void* opaque,
 }
 
 template <class B>
+void transcription_packed_hessian(const void* opaque,
+                                  const double* q,
+                                  const double* v,
+                                  const double* lambda,
+                                  const GaugeUnits& units,
+                                  double* l_qq) {
+  with_units(B::from(opaque).system, units, [&](const auto& system) {
+    packed_lagrangian_hessian(system, q, v, lambda, l_qq);
+  });
+}
+
+template <class B>
 const TranscriptionFunctions& transcription_of() {
   using Scene = std::decay_t<decltype(transcription(B::from(nullptr).system).scene())>;
-  static constexpr TranscriptionFunctions kFunctions = {B::n,
-                                                        Scene::kMultipliers,
-                                                        HasGauge<Scene>,
-                                                        transcription_entries<B>,
-                                                        transcription_hessian<B>};
+  static constexpr TranscriptionFunctions kFunctions = [] {
+    TranscriptionFunctions f{B::n,
+                             Scene::kMultipliers,
+                             HasGauge<Scene>,
+                             transcription_entries<B>,
+                             transcription_hessian<B>};
+    if constexpr (B::System::kPacks) {
+      f.packed_entries = transcription_packed_entries<B>;
+      f.packed_hessian = transcription_packed_hessian<B>;
+    }
+    return f;
+  }();
   return kFunctions;
 }
 

@@ -9,6 +9,10 @@ struct GaugeUnits {
   double weight = 1;          // kappa
 };
 
+// How many points stand side by side in the calls that take packs of them. Number i of point l is
+// at i * kTranscriptionLanes + l there.
+inline constexpr int kTranscriptionLanes = 8;
+
 // All arrays belong to the caller. q and v have n entries, lambda has k.
 struct TranscriptionFunctions {
   int dof = 0;          // n
@@ -34,6 +38,22 @@ struct TranscriptionFunctions {
                   const double* lambda,
                   const GaugeUnits& units,
                   double* l_qq) = nullptr;
+
+  // The entries of kTranscriptionLanes points side by side. With slopes each of them is followed by
+  // its n derivatives, and nothing fills the rows. Null where the formulas do not run on packs.
+  void (*packed_entries)(const void* system,
+                         const double* q,
+                         const GaugeUnits& units,
+                         bool slopes,
+                         double* out) = nullptr;
+  // The second derivatives of kTranscriptionLanes points side by side; null where packed_entries
+  // is.
+  void (*packed_hessian)(const void* system,
+                         const double* q,
+                         const double* v,
+                         const double* lambda,
+                         const GaugeUnits& units,
+                         double* l_qq) = nullptr;
 };
 
 // How many entries there are.

@@ -188,19 +188,18 @@ void branch(const void* opaque, double* y) {
 // transcription_functions.h.
 double velocity_unit(const Rescaled& r, int j) { return r.transcription.gauge ? 1 : r.z[j]; }
 
-void entries(
-    const void* opaque, const double* q, const GaugeUnits& /*units*/, bool slopes, double* out) {
-  const Rescaled& r = Rescaled::from(opaque);
+// The entries of `lanes` points side by side, in rows of `length` numbers each.
+template <int lanes>
+void convert_entries(const Rescaled& r, bool slopes, int length, double* out) {
   const int n = r.dof();
-  double* const at = scratch(n);
-  Rescaled::scale(q, r.z, n, at);
-  r.own.transcription->entries(r.system(), at, r.gauge(), slopes, out);
-  const int length = slopes ? row_length(n) : 1;
   double* row = out;
+  const auto multiply = [&](int number, double unit) {
+    for (int l = 0; l < lanes; ++l) row[number * lanes + l] *= unit;
+  };
   const auto convert = [&](double unit) {
-    row[0] *= unit;
-    for (int d = 0; slopes && d < n; ++d) row[1 + d] *= unit * r.z[d];
-    row += length;
+    multiply(0, unit);
+    for (int d = 0; slopes && d < n; ++d) multiply(1 + d, unit * r.z[d]);
+    row += length * lanes;
   };
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j <= i; ++j) {
@@ -213,6 +212,64 @@ void entries(
   convert(1 / r.scales.energy());
 }
 
+void entries(
+    const void* opaque, const double* q, const GaugeUnits& /*units*/, bool slopes, double* out) {
+  const Rescaled& r = Rescaled::from(opaque);
+  const int n = r.dof();
+  double* const at = scratch(n);
+  Rescaled::scale(q, r.z, n, at);
+  r.own.transcription->entries(r.system(), at, r.gauge(), slopes, out);
+  convert_entries<1>(r, slopes, slopes ? row_length(n) : 1, out);
+}
+
+void packed_entries(
+    const void* opaque, const double* q, const GaugeUnits& /*units*/, bool slopes, double* out) {
+  const Rescaled& r = Rescaled::from(opaque);
+  const int n = r.dof();
+  double* const at = scratch(n * kTranscriptionLanes);
+  static_assert(kLanes == kTranscriptionLanes);
+  r.scale_rows(q, n, at);
+  r.own.transcription->packed_entries(r.system(), at, r.gauge(), slopes, out);
+  convert_entries<kLanes>(r, slopes, slopes ? 1 + n : 1, out);
+}
+
+// The arguments of a Hessian in units of the scene, of `lanes` points side by side.
+struct HessianArguments {
+  double* q;
+  double* v;
+  double* lambda;
+};
+template <int lanes>
+HessianArguments hessian_arguments(const Rescaled& r,
+                                   const double* q,
+                                   const double* v,
+                                   const double* lambda) {
+  const int n = r.dof();
+  const int k = r.own.transcribed;
+  double* const at = scratch((2 * n + k) * lanes);
+  const HessianArguments own{at, at + n * lanes, at + 2 * n * lanes};
+  for (int j = 0; j < n; ++j) {
+    const double speed = velocity_unit(r, j) / r.scales.time;
+    for (int l = j * lanes; l < (j + 1) * lanes; ++l) own.q[l] = q[l] * r.z[j];
+    for (int l = j * lanes; l < (j + 1) * lanes; ++l) own.v[l] = v[l] * speed;
+  }
+  for (int i = 0; i < k; ++i) {
+    const double unit = r.scales.action / r.scales.rows[i];
+    for (int l = i * lanes; l < (i + 1) * lanes; ++l) own.lambda[l] = lambda[l] * unit;
+  }
+  return own;
+}
+template <int lanes>
+void convert_hessian(const Rescaled& r, double* l_qq) {
+  const int n = r.dof();
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      const double unit = r.z[i] * r.z[j] / r.scales.energy();
+      for (int l = 0; l < lanes; ++l) l_qq[(i * n + j) * lanes + l] *= unit;
+    }
+  }
+}
+
 void hessian(const void* opaque,
              const double* q,
              const double* v,
@@ -220,18 +277,21 @@ void hessian(const void* opaque,
              const GaugeUnits& /*units*/,
              double* l_qq) {
   const Rescaled& r = Rescaled::from(opaque);
-  const int n = r.dof();
-  const int k = r.own.transcribed;
-  double* const at = scratch(2 * n + k);
-  double* const velocity = at + n;
-  double* const multipliers = velocity + n;
-  for (int j = 0; j < n; ++j) at[j] = q[j] * r.z[j];
-  for (int j = 0; j < n; ++j) velocity[j] = v[j] * velocity_unit(r, j) / r.scales.time;
-  for (int i = 0; i < k; ++i) multipliers[i] = lambda[i] * r.scales.action / r.scales.rows[i];
-  r.own.transcription->hessian(r.system(), at, velocity, multipliers, r.gauge(), l_qq);
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j) l_qq[i * n + j] *= r.z[i] * r.z[j] / r.scales.energy();
-  }
+  const HessianArguments own = hessian_arguments<1>(r, q, v, lambda);
+  r.own.transcription->hessian(r.system(), own.q, own.v, own.lambda, r.gauge(), l_qq);
+  convert_hessian<1>(r, l_qq);
+}
+
+void packed_hessian(const void* opaque,
+                    const double* q,
+                    const double* v,
+                    const double* lambda,
+                    const GaugeUnits& /*units*/,
+                    double* l_qq) {
+  const Rescaled& r = Rescaled::from(opaque);
+  const HessianArguments own = hessian_arguments<kLanes>(r, q, v, lambda);
+  r.own.transcription->packed_hessian(r.system(), own.q, own.v, own.lambda, r.gauge(), l_qq);
+  convert_hessian<kLanes>(r, l_qq);
 }
 
 // --- flows ---------------------------------------------------------------------------------------
@@ -382,6 +442,10 @@ Rescaled::Rescaled(const Dynamics& dynamics, const NaturalScales& natural)
   transcription = *own.transcription;
   transcription.entries = internal::entries;
   transcription.hessian = internal::hessian;
+  if (transcription.packed_entries != nullptr) {
+    transcription.packed_entries = internal::packed_entries;
+    transcription.packed_hessian = internal::packed_hessian;
+  }
 }
 
 }  // namespace
