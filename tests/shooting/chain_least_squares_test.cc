@@ -25,6 +25,23 @@ ChainOptions to_the_end() {
   return options;
 }
 
+// Residuals of one interval at a time, f(i, x, residual, jacobian), as many side by side.
+template <class F>
+ChainResiduals side_by_side(const F& f, int residuals, int n) {
+  return [=](int first, int count, const double* x, double* residual, double* jacobian) {
+    for (int l = 0; l < count; ++l) {
+      std::vector<double> own(residuals);
+      std::vector<double> slopes(jacobian != nullptr ? residuals * 2 * n : 0);
+      if (!f(first + l, x + l * n, own.data(), slopes.empty() ? nullptr : slopes.data())) {
+        return false;
+      }
+      for (std::size_t i = 0; i < own.size(); ++i) residual[i * kChainLanes + l] = own[i];
+      for (std::size_t i = 0; i < slopes.size(); ++i) jacobian[i * kChainLanes + l] = slopes[i];
+    }
+    return true;
+  };
+}
+
 // sum |x_{i+1} - x_i|^2: equidistant points on the line between the ends.
 bool stretched(int /*i*/, const double* x, double* residual, double* jacobian) {
   for (int j = 0; j < 2; ++j) residual[j] = x[2 + j] - x[j];
@@ -36,10 +53,37 @@ bool stretched(int /*i*/, const double* x, double* residual, double* jacobian) {
 
 TEST(ChainLeastSquares, SolvesALinearProblem) {
   std::vector<double> x{1, -2, 7, 7, 0, 3, -5, 1, 9, 2};
-  EXPECT_GT(minimise_chain(stretched, 2, 2, to_the_end(), x), 0);
+  EXPECT_GT(minimise_chain(side_by_side(stretched, 2, 2), 2, 2, to_the_end(), x), 0);
   for (int i = 0; i <= 4; ++i) {
     EXPECT_NEAR(x[2 * i], 1 + 2 * i, kDamped);
     EXPECT_NEAR(x[2 * i + 1], -2 + i, kDamped);
+  }
+}
+
+// Intervals fill the lanes, leave some empty, or begin new ones; all widths of the band.
+TEST(ChainLeastSquares, SolvesChainsOfEveryLengthAndWidth) {
+  for (const int n : {1, 2, 3, 4, 5, 6, 7}) {
+    const auto straight = [n](int, const double* x, double* residual, double* jacobian) {
+      for (int j = 0; j < n; ++j) residual[j] = (j + 1) * (x[n + j] - x[j]);
+      if (jacobian == nullptr) return true;
+      std::fill_n(jacobian, n * 2 * n, 0.0);
+      for (int j = 0; j < n; ++j) {
+        jacobian[j * 2 * n + j] = -(j + 1);
+        jacobian[j * 2 * n + n + j] = j + 1;
+      }
+      return true;
+    };
+    for (const int intervals : {2, 7, 8, 9, 16, 21}) {
+      std::vector<double> x(static_cast<std::size_t>((intervals + 1) * n), 0.5);
+      for (int j = 0; j < n; ++j) {
+        x[j] = j;
+        x[intervals * n + j] = j - intervals;
+      }
+      EXPECT_GT(minimise_chain(side_by_side(straight, n, n), n, n, to_the_end(), x), 0);
+      for (int i = 0; i <= intervals; ++i) {
+        for (int j = 0; j < n; ++j) EXPECT_NEAR(x[i * n + j], j - i, intervals * kDamped);
+      }
+    }
   }
 }
 
@@ -49,7 +93,7 @@ TEST(ChainLeastSquares, MovesWhatIsFreeOfTheEnds) {
   std::vector<double> x{1, -2, 7, 7, 0, 3, -5, 1, 9, 2};
   ChainOptions options = to_the_end();
   options.free_first = {false, true};
-  EXPECT_GT(minimise_chain(stretched, 2, 2, options, x), 0);
+  EXPECT_GT(minimise_chain(side_by_side(stretched, 2, 2), 2, 2, options, x), 0);
   for (int i = 0; i <= 4; ++i) {
     EXPECT_NEAR(x[2 * i], 1 + 2 * i, kDamped);
     EXPECT_NEAR(x[2 * i + 1], 2, kDamped);
@@ -65,7 +109,7 @@ TEST(ChainLeastSquares, MovesWhatIsFreeOfTheEnds) {
   std::vector<double> line{0, 5, 5, 5};
   options.free_first = {};
   options.free_last = {true};
-  EXPECT_GT(minimise_chain(pulled, 2, 1, options, line), 0);
+  EXPECT_GT(minimise_chain(side_by_side(pulled, 2, 1), 2, 1, options, line), 0);
   // Three springs from 0 to x and one from x to 3: x / 3 = 3 - x.
   for (int i = 0; i <= 3; ++i) EXPECT_NEAR(line[i], 0.75 * i, kDamped);
 }
@@ -103,12 +147,12 @@ TEST(ChainLeastSquares, EndsWhereTheGradientVanishesAndNeverRises) {
   double cost = cost_of(x, nullptr);
   constexpr int kIterations = 100;
   for (int i = 0; i < kIterations; ++i) {
-    minimise_chain(bent, 2, 1, one, x);
+    minimise_chain(side_by_side(bent, 2, 1), 2, 1, one, x);
     const double next = cost_of(x, nullptr);
     EXPECT_LE(next, cost);
     cost = next;
   }
-  minimise_chain(bent, 2, 1, to_the_end(), x);
+  minimise_chain(side_by_side(bent, 2, 1), 2, 1, to_the_end(), x);
   std::vector<double> slope;
   cost_of(x, &slope);
   for (std::size_t i = 1; i + 1 < x.size(); ++i) EXPECT_NEAR(slope[i], 0, kFlat);
@@ -118,16 +162,16 @@ TEST(ChainLeastSquares, EndsWhereTheGradientVanishesAndNeverRises) {
 
 TEST(ChainLeastSquares, DoesNothingWhereThereIsNothingToDo) {
   std::vector<double> ends{1, 2, 3, 4};
-  EXPECT_EQ(minimise_chain(stretched, 2, 2, {}, ends), 0);
+  EXPECT_EQ(minimise_chain(side_by_side(stretched, 2, 2), 2, 2, {}, ends), 0);
   std::vector<double> tight{0, 0, 1, 1, 2, 2};
-  EXPECT_EQ(minimise_chain(stretched, 2, 2, {}, tight), 0);
+  EXPECT_EQ(minimise_chain(side_by_side(stretched, 2, 2), 2, 2, {}, tight), 0);
 }
 
 // Residuals that do not exist everywhere: the path stays where they do.
 TEST(ChainLeastSquares, KeepsWithinWhereTheResidualsExist) {
   const auto none = [](int, const double*, double*, double*) { return false; };
   std::vector<double> x{0, 1, 2.5};
-  EXPECT_EQ(minimise_chain(none, 1, 1, {}, x), 0);
+  EXPECT_EQ(minimise_chain(side_by_side(none, 1, 1), 1, 1, {}, x), 0);
   EXPECT_EQ(x[1], 1);
   const auto logarithms = [](int, const double* at, double* residual, double* jacobian) {
     if (!(at[0] > 0 && at[1] > 0)) return false;
@@ -136,7 +180,7 @@ TEST(ChainLeastSquares, KeepsWithinWhereTheResidualsExist) {
     return true;
   };
   std::vector<double> far{1, 1000, 4};
-  minimise_chain(logarithms, 1, 1, to_the_end(), far);
+  minimise_chain(side_by_side(logarithms, 1, 1), 1, 1, to_the_end(), far);
   EXPECT_NEAR(far[1], 2, kFlat);  // the geometric mean
 }
 

@@ -1,6 +1,7 @@
 #include "carnot/shooting/linear/chain_least_squares.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -62,8 +63,10 @@ class Chain {
         size_(ends_.size()),
         normal_(size_, 2 * n - 1),
         gradient_(size_),
-        r_(residuals),
-        jacobian_(r_.size() * 2 * n) {}
+        r_(static_cast<std::size_t>(residuals) * kChainLanes),
+        jacobian_(r_.size() * 2 * n),
+        products_(static_cast<std::size_t>(2 * n) * 2 * n * kChainLanes),
+        slopes_(static_cast<std::size_t>(2 * n) * kChainLanes) {}
 
   [[nodiscard]] int size() const { return size_; }
   // x + step.
@@ -90,9 +93,10 @@ class Chain {
   // Infinite where there are no residuals.
   [[nodiscard]] double cost(const std::vector<double>& x) {
     double sum = 0;
-    for (int i = 0; i < intervals_; ++i) {
-      if (!residuals_of_(i, &x[i * n_], r_.data(), nullptr)) return kNone;
-      for (const double r : r_) sum += r * r;
+    for (int i = 0; i < intervals_; i += kChainLanes) {
+      const int count = std::min(kChainLanes, intervals_ - i);
+      if (!residuals_of_(i, count, &x[i * n_], r_.data(), nullptr)) return kNone;
+      sum += sum_of_squares(count);
     }
     return std::isfinite(sum) ? 0.5 * sum : kNone;
   }
@@ -102,10 +106,12 @@ class Chain {
     normal_.clear();
     std::fill(gradient_.begin(), gradient_.end(), 0.0);
     double sum = 0;
-    for (int i = 0; i < intervals_; ++i) {
-      if (!residuals_of_(i, &x[i * n_], r_.data(), jacobian_.data())) return kNone;
-      for (const double r : r_) sum += r * r;
-      add(i);
+    for (int i = 0; i < intervals_; i += kChainLanes) {
+      const int count = std::min(kChainLanes, intervals_ - i);
+      if (!residuals_of_(i, count, &x[i * n_], r_.data(), jacobian_.data())) return kNone;
+      sum += sum_of_squares(count);
+      multiply();
+      for (int l = 0; l < count; ++l) add(i + l, l);
     }
     return std::isfinite(sum) ? 0.5 * sum : kNone;
   }
@@ -117,34 +123,70 @@ class Chain {
  private:
   static constexpr double kNone = std::numeric_limits<double>::infinity();
 
-  // What interval i adds to the normal equations.
-  void add(int i) {
-    const int first = i == 0 ? n_ : 0;  // of its 2n arguments that are free
-    const int last = i + 1 == intervals_ ? n_ : 2 * n_;
-    const int shift = ends_.first() + (i - 1) * n_;
-    if (ends_.free() && (i == 0 || i + 1 == intervals_)) return add_beside_end(i);
-    for (std::size_t r = 0; r < r_.size(); ++r) {
-      const double* row = &jacobian_[r * 2 * n_];
-      for (int a = first; a < last; ++a) {
-        gradient_[shift + a] += row[a] * r_[r];
-        double* normal = &normal_(shift + a, shift + a);
-        for (int b = a; b < last; ++b) normal[b - a] += row[a] * row[b];
+  // Of the first `count` intervals that stand side by side.
+  [[nodiscard]] double sum_of_squares(int count) const {
+    double sum = 0;
+    for (std::size_t r = 0; r < r_.size(); r += kChainLanes) {
+      for (int l = 0; l < count; ++l) sum += r_[r + l] * r_[r + l];
+    }
+    return sum;
+  }
+
+  // J'r and J'J of the intervals that stand side by side.
+  void multiply() {
+    const int columns = 2 * n_;
+    const std::size_t rows = r_.size() / kChainLanes;
+    const auto entry = [&](std::size_t row, int column) {
+      return &jacobian_[(row * columns + column) * kChainLanes];
+    };
+    // Lane by lane in memory of its own, so that the compiler may keep the sums in registers.
+    const auto sum_products = [&](const auto& left, const auto& right, double* to) {
+      std::array<double, kChainLanes> sums{};
+      for (std::size_t row = 0; row < rows; ++row) {
+        const double* x = left(row);
+        const double* y = right(row);
+        for (int l = 0; l < kChainLanes; ++l) sums[l] += x[l] * y[l];
+      }
+      std::copy(sums.begin(), sums.end(), to);
+    };
+    for (int a = 0; a < columns; ++a) {
+      const auto column = [&](std::size_t row) { return entry(row, a); };
+      sum_products(
+          column,
+          [&](std::size_t row) { return &r_[row * kChainLanes]; },
+          &slopes_[a * kChainLanes]);
+      for (int b = a; b < columns; ++b) {
+        sum_products(
+            column,
+            [&](std::size_t row) { return entry(row, b); },
+            &products_[(a * columns + b) * kChainLanes]);
       }
     }
   }
 
+  // What interval i, number l of those side by side, adds to the normal equations.
+  void add(int i, int l) {
+    const int first = i == 0 ? n_ : 0;  // of its 2n arguments that are free
+    const int last = i + 1 == intervals_ ? n_ : 2 * n_;
+    const int shift = ends_.first() + (i - 1) * n_;
+    if (ends_.free() && (i == 0 || i + 1 == intervals_)) return add_beside_end(i, l);
+    for (int a = first; a < last; ++a) {
+      gradient_[shift + a] += slopes_[a * kChainLanes + l];
+      double* normal = &normal_(shift + a, shift + a);
+      const double* products = &products_[(a * 2 * n_ + a) * kChainLanes + l];
+      for (int b = 0; b < last - a; ++b) normal[b] += products[b * kChainLanes];
+    }
+  }
+
   // The same where a node may be free in part.
-  void add_beside_end(int i) {
-    for (std::size_t r = 0; r < r_.size(); ++r) {
-      const double* row = &jacobian_[r * 2 * n_];
-      for (int a = 0; a < 2 * n_; ++a) {
-        const int at = ends_.unknown(i * n_ + a);
-        if (at < 0) continue;
-        gradient_[at] += row[a] * r_[r];
-        for (int b = a; b < 2 * n_; ++b) {
-          const int other = ends_.unknown(i * n_ + b);
-          if (other >= 0) normal_(at, other) += row[a] * row[b];
-        }
+  void add_beside_end(int i, int l) {
+    for (int a = 0; a < 2 * n_; ++a) {
+      const int at = ends_.unknown(i * n_ + a);
+      if (at < 0) continue;
+      gradient_[at] += slopes_[a * kChainLanes + l];
+      for (int b = a; b < 2 * n_; ++b) {
+        const int other = ends_.unknown(i * n_ + b);
+        if (other >= 0) normal_(at, other) += products_[(a * 2 * n_ + b) * kChainLanes + l];
       }
     }
   }
@@ -156,8 +198,11 @@ class Chain {
   int size_;
   BandedCholesky normal_;
   std::vector<double> gradient_;
+  // Of kChainLanes intervals side by side: r, J, J'J and J'r.
   std::vector<double> r_;
   std::vector<double> jacobian_;
+  std::vector<double> products_;
+  std::vector<double> slopes_;
 };
 
 double largest(const std::vector<double>& x) {

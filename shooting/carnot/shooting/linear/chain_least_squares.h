@@ -23,10 +23,14 @@ struct ChainOptions {
   std::vector<bool> free_last;
 };
 
-// Residuals i at (x_i, x_{i+1}), 2n numbers, and unless null their Jacobian, `residuals` x 2n
-// row-major. False where there are none.
+// How many intervals are evaluated side by side.
+inline constexpr int kChainLanes = 8;
+
+// The residuals of `count` intervals from `first` on, at the nodes x_first, ..., and unless null
+// their Jacobian by (x_i, x_{i+1}), `residuals` x 2n row-major. Number r of interval first + l is
+// at r * kChainLanes + l; what is beyond `count` is not read. False where there are none.
 using ChainResiduals =
-    std::function<bool(int i, const double* x, double* residual, double* jacobian)>;
+    std::function<bool(int first, int count, const double* x, double* residual, double* jacobian)>;
 
 // Improves the inner nodes of `x`, (intervals + 1) x n row-major, and what is free of the end
 // nodes. Returns the number of iterations; 0 where there is nothing to improve, or no residuals to

@@ -45,29 +45,64 @@ double DiscreteEquations::evaluate(const Path& path,
     for (int j = 0; j < n_ && !dynamics_.has_transcription(); ++j) {
       largest = std::max(largest, std::abs(terms.x[n_ + j] - terms.x[j]));
     }
-    for (int a = 0; a < m_; ++a) unknowns_[a] = unknown(i, a);
-    for (int a = 0; a < m_; ++a) {
-      if (a < 2 * n_) largest = std::max(largest, std::abs(terms.gradient[a]));
-      const int row = unknowns_[a];
-      if (row < 0) continue;
-      residual[row] += terms.gradient[a];
-      for (int b = 0; matrix != nullptr && b < m_; ++b) {
-        const int column = unknowns_[b];
-        if (column < 0) continue;
-        double entry = terms.hessian[a * m_ + b];
-        if (a < 2 * n_ && b < 2 * n_) {
-          entry *= weights.hessian;
-          if (weights.metric != 0) {
-            double sum = 0;
-            for (int r = 0; r < n_; ++r) sum += slopes_[r * 2 * n_ + a] * slopes_[r * 2 * n_ + b];
-            entry += weights.metric * h_ * sum;
-          }
-        }
-        (*matrix)(row, column) += entry;
-      }
+    for (int a = 0; a < 2 * n_; ++a) largest = std::max(largest, std::abs(terms.gradient[a]));
+    const bool plain = weights.hessian == 1 && weights.metric == 0;
+    if (i > 0 && i + 1 < intervals_ && (matrix == nullptr || plain)) {
+      add_between(i, terms, residual, matrix);
+    } else {
+      add(i, terms, weights, residual, matrix);
     }
   });
   return largest;
+}
+
+void DiscreteEquations::add(int i,
+                            const PathLagrangian::Terms& terms,
+                            const Weights& weights,
+                            std::vector<double>& residual,
+                            BandedLu* matrix) {
+  for (int a = 0; a < m_; ++a) unknowns_[a] = unknown(i, a);
+  for (int a = 0; a < m_; ++a) {
+    const int row = unknowns_[a];
+    if (row < 0) continue;
+    residual[row] += terms.gradient[a];
+    for (int b = 0; matrix != nullptr && b < m_; ++b) {
+      const int column = unknowns_[b];
+      if (column < 0) continue;
+      double entry = terms.hessian[a * m_ + b];
+      if (a < 2 * n_ && b < 2 * n_) {
+        entry *= weights.hessian;
+        if (weights.metric != 0) {
+          double sum = 0;
+          for (int r = 0; r < n_; ++r) sum += slopes_[r * 2 * n_ + a] * slopes_[r * 2 * n_ + b];
+          entry += weights.metric * h_ * sum;
+        }
+      }
+      (*matrix)(row, column) += entry;
+    }
+  }
+}
+
+void DiscreteEquations::add_between(int i,
+                                    const PathLagrangian::Terms& terms,
+                                    std::vector<double>& residual,
+                                    BandedLu* matrix) const {
+  // The unknowns q_i, lambda_i and q_{i+1} follow each other.
+  const int first = first_ + i * (n_ + k_) - n_;
+  const auto argument = [&](int place) {
+    if (place < n_) return place;
+    return place < n_ + k_ ? n_ + place : place - k_;
+  };
+  for (int place = 0; place < m_; ++place) {
+    const int a = argument(place);
+    residual[first + place] += terms.gradient[a];
+    if (matrix == nullptr) continue;
+    double* const to = &(*matrix)(first + place, first);
+    const double* const from = &terms.hessian[a * m_];
+    for (int b = 0; b < n_; ++b) to[b] += from[b];
+    for (int b = 0; b < k_; ++b) to[n_ + b] += from[2 * n_ + b];
+    for (int b = 0; b < n_; ++b) to[n_ + k_ + b] += from[n_ + b];
+  }
 }
 
 void DiscreteEquations::metric_product(const Path& path,

@@ -67,6 +67,17 @@ class DiscreteEquations {
     if (a >= n_) return i + 1 == intervals_ ? free_to_[a - n_] : start + k_ + a - n_;
     return i == 0 ? free_from_[a] : start - n_ + a;
   }
+  // Adds the terms of interval i; of one between others, where unknowns follow each other and
+  // nothing is weighed, with less effort.
+  void add(int i,
+           const PathLagrangian::Terms& terms,
+           const Weights& weights,
+           std::vector<double>& residual,
+           BandedLu* matrix);
+  void add_between(int i,
+                   const PathLagrangian::Terms& terms,
+                   std::vector<double>& residual,
+                   BandedLu* matrix) const;
   // Sets slopes_, n x 2n: dr of interval i by both nodes.
   void set_slopes(const Path& path, int i);
 

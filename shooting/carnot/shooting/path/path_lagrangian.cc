@@ -34,6 +34,9 @@ PathLagrangian::PathLagrangian(const Dynamics& dynamics, double h, double drift)
       velocity_(n_) {
   if (dynamics.has_transcription()) {
     values_.resize(n_ + k_ + 1);
+    packed_x_.resize(x_.size() * kLanes);
+    packed_gradient_.resize(packed_x_.size());
+    packed_hessian_.resize(hessian_.size() * kLanes);
   } else {
     terms_.emplace(dynamics, drift);
   }
@@ -49,7 +52,25 @@ void PathLagrangian::set_middle(const Path& path, int i) {
 }
 
 int PathLagrangian::together(const Path& path, int first) const {
-  return terms_ ? std::min(HamiltonianTerms::kPoints, path.intervals - first) : 1;
+  return std::min(terms_ ? HamiltonianTerms::kPoints : kLanes, path.intervals - first);
+}
+
+void PathLagrangian::transcribe(const Path& path, int first, int count, bool second) {
+  for (int l = 0; l < kLanes; ++l) {
+    path.gather(first + std::min(l, count - 1), k_, x_.data());
+    for (std::size_t a = 0; a < x_.size(); ++a) packed_x_[a * kLanes + l] = x_[a];
+  }
+  dynamics_.discrete_lagrangians(
+      h_, packed_x_, packed_gradient_, second ? packed_hessian_ : std::span<double>());
+}
+
+void PathLagrangian::unpack(int l, bool second) {
+  for (std::size_t a = 0; a < gradient_.size(); ++a) {
+    gradient_[a] = packed_gradient_[a * kLanes + l];
+  }
+  for (std::size_t a = 0; second && a < hessian_.size(); ++a) {
+    hessian_[a] = packed_hessian_[a * kLanes + l];
+  }
 }
 
 void PathLagrangian::visit(const Path& path,
@@ -60,6 +81,7 @@ void PathLagrangian::visit(const Path& path,
   for (int first = 0; first < path.intervals;) {
     if (terms_) evaluate_middles(path, h_, first, order, *terms_);
     const int count = together(path, first);
+    if (!terms_) transcribe(path, first, count, second);
     for (int point = 0; point < count; ++point) {
       const int i = first + point;
       path.gather(i, k_, x_.data());
@@ -68,7 +90,7 @@ void PathLagrangian::visit(const Path& path,
         set_gradient(point, &path.lambda[i * k_]);
         if (second) set_hessian(point);
       } else {
-        dynamics_.discrete_lagrangian(h_, x_, gradient_, hessian);
+        unpack(point, second);
       }
       visit(i, {x_, gradient_, hessian});
     }

@@ -50,10 +50,15 @@ class PathLagrangian {
   double action(const Path& path);
 
  private:
+  static constexpr int kLanes = Dynamics::kMidpointLanes;
+
   // Sets middle_ and velocity_.
   void set_middle(const Path& path, int i);
   // How many intervals are evaluated at once from `first` on.
   [[nodiscard]] int together(const Path& path, int first) const;
+  // Evaluates the transcription on intervals side by side, and takes the terms of number l of them.
+  void transcribe(const Path& path, int first, int count, bool second);
+  void unpack(int l, bool second);
   void set_gradient(int point, const double* p);
   void set_hessian(int point);
 
@@ -67,7 +72,11 @@ class PathLagrangian {
   std::vector<double> hessian_;
   std::vector<double> middle_;
   std::vector<double> velocity_;
-  std::vector<double> values_;  // of the transcription
+  // Of the transcription: of one interval, and of kLanes of them side by side.
+  std::vector<double> values_;
+  std::vector<double> packed_x_;
+  std::vector<double> packed_gradient_;
+  std::vector<double> packed_hessian_;
 };
 
 }  // namespace carnot::internal

@@ -1,6 +1,7 @@
 #include "carnot/shooting/path/relaxation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 
@@ -27,93 +28,140 @@ struct Transcription {
   [[nodiscard]] int residuals() const { return terms() + walls.size(); }
 };
 
-// Residuals sqrt(h) r, sqrt(h rho) (G v - lambda / rho) and, with a potential, sqrt(2 h (c - V)) of
-// one interval; keeps room for what it needs on the way.
-class Interval {
+constexpr int kLanes = Dynamics::kMidpointLanes;
+static_assert(kLanes == kChainLanes);
+
+// The middles of kLanes intervals side by side, and their velocities. Where there are fewer, the
+// last one stands for the rest.
+class Middles {
  public:
-  explicit Interval(const Transcription& shared)
+  explicit Middles(int n) : n_(n), q_(static_cast<std::size_t>(n) * kLanes), v_(q_.size()) {}
+
+  // Of `count` intervals of length h from the node q on.
+  void set(const double* q, int count, double h) {
+    const double per_h = 1 / h;
+    for (int l = 0; l < kLanes; ++l) {
+      const double* left = q + std::min(l, count - 1) * n_;
+      const double* right = left + n_;
+      for (int j = 0; j < n_; ++j) {
+        q_[j * kLanes + l] = 0.5 * (left[j] + right[j]);
+        v_[j * kLanes + l] = (right[j] - left[j]) * per_h;
+      }
+    }
+  }
+
+  [[nodiscard]] const std::vector<double>& q() const { return q_; }
+  [[nodiscard]] const std::vector<double>& v() const { return v_; }
+
+ private:
+  int n_;
+  std::vector<double> q_;
+  std::vector<double> v_;
+};
+
+// Residuals sqrt(h) r, sqrt(h rho) (G v - lambda / rho) and, with a potential, sqrt(2 h (c - V)) of
+// kLanes intervals side by side; keeps room for what it needs on the way.
+class Intervals {
+ public:
+  explicit Intervals(const Transcription& shared)
       : shared_(shared),
-        qm_(shared.dynamics.dof),
-        v_(shared.dynamics.dof),
-        terms_(shared.dynamics.dof + shared.dynamics.transcribed + 1),
+        middles_(shared.dynamics.dof),
+        terms_((shared.dynamics.dof + shared.dynamics.transcribed + 1) * kLanes),
         derivative_(terms_.size() * 2 * shared.dynamics.dof),
+        at_(shared.dynamics.dof),
         s_(shared.walls.size()),
         gradients_(s_.size() * shared.dynamics.dof) {}
 
-  // At the nodes q, 2n numbers; see chain_least_squares.h.
-  bool evaluate(const double* lambda, const double* q, double* residuals, double* jacobian) {
+  // At the nodes from q on, with the multipliers from lambda on; see chain_least_squares.h.
+  bool evaluate(
+      int count, const double* lambda, const double* q, double* residuals, double* jacobian) {
     const int n = shared_.dynamics.dof;
-    if (shared_.walled && !same_chart(shared_.dynamics, q, q + n)) return false;
-    for (int i = 0; i < n; ++i) {
-      qm_[i] = 0.5 * (q[i] + q[n + i]);
-      v_[i] = (q[n + i] - q[i]) / shared_.h;
+    for (int l = 0; shared_.walled && l < count; ++l) {
+      if (!same_chart(shared_.dynamics, q + l * n, q + (l + 1) * n)) return false;
     }
+    middles_.set(q, count, shared_.h);
     const auto derivative = jacobian != nullptr ? derivative_ : std::span<double>();
-    if (!shared_.dynamics.midpoint(qm_, v_, terms_, derivative)) return false;
+    if (!shared_.dynamics.midpoints(middles_.q(), middles_.v(), terms_, derivative)) return false;
+    const double per_h = 1 / shared_.h;
+    Row sums{};  // zero where all numbers are finite
     for (int row = 0; row < shared_.terms(); ++row) {
-      const double weight = scale(row, lambda, residuals);
-      if (!std::isfinite(weight) || !std::isfinite(residuals[row])) return false;
+      const Row weights = scale(row, count, lambda, residuals + row * kLanes);
+      for (int l = 0; l < kLanes; ++l) sums[l] += 0 * (weights[l] + residuals[row * kLanes + l]);
       if (jacobian == nullptr) continue;
-      const double* d = &derivative[row * 2 * n];
-      double* to = jacobian + row * 2 * n;
+      const double* d = &derivative[row * 2 * n * kLanes];
+      double* to = jacobian + row * 2 * n * kLanes;
       for (int i = 0; i < n; ++i) {
-        const double by_q = 0.5 * weight * d[i];
-        const double by_v = weight * d[n + i] / shared_.h;
-        to[i] = by_q - by_v;
-        to[n + i] = by_q + by_v;
+        for (int l = 0; l < kLanes; ++l) {
+          const double by_q = 0.5 * weights[l] * d[i * kLanes + l];
+          const double by_v = weights[l] * per_h * d[(n + i) * kLanes + l];
+          to[i * kLanes + l] = by_q - by_v;
+          to[(n + i) * kLanes + l] = by_q + by_v;
+        }
       }
     }
-    if (shared_.walls.size() > 0) add_walls(residuals, jacobian);
+    if (sums != Row{}) return false;
+    for (int l = 0; shared_.walls.size() > 0 && l < count; ++l) add_walls(l, residuals, jacobian);
     return true;
   }
 
  private:
-  // Sets residual `row` from the terms, returns d residual / d term.
-  double scale(int row, const double* lambda, double* residuals) const {
+  using Row = std::array<double, kLanes>;
+
+  // Sets residual `row` of all intervals from the terms, returns d residual / d term.
+  Row scale(int row, int count, const double* lambda, double* residuals) const {
     const int n = shared_.dynamics.dof;
+    const int k = shared_.dynamics.transcribed;
+    const double* terms = &terms_[row * kLanes];
+    Row weights;
     if (row < n) {
-      const double weight = std::sqrt(shared_.h);
-      residuals[row] = weight * terms_[row];
-      return weight;
+      weights.fill(std::sqrt(shared_.h));
+      for (int l = 0; l < kLanes; ++l) residuals[l] = weights[l] * terms[l];
+    } else if (row < n + k) {
+      const double per_rho = 1 / shared_.rho;
+      weights.fill(std::sqrt(shared_.h * shared_.rho));
+      for (int l = 0; l < kLanes; ++l) {
+        const double multiplier = lambda[std::min(l, count - 1) * k + row - n];
+        residuals[l] = weights[l] * (terms[l] - multiplier * per_rho);
+      }
+    } else {
+      for (int l = 0; l < kLanes; ++l) {
+        residuals[l] = std::sqrt(2 * shared_.h * (shared_.ceiling - terms[l]));
+        weights[l] = -shared_.h / residuals[l];
+      }
     }
-    if (row < n + shared_.dynamics.transcribed) {
-      const double weight = std::sqrt(shared_.h * shared_.rho);
-      residuals[row] = weight * (terms_[row] - lambda[row - n] / shared_.rho);
-      return weight;
-    }
-    residuals[row] = std::sqrt(2 * shared_.h * (shared_.ceiling - terms_[row]));
-    return -shared_.h / residuals[row];
+    return weights;
   }
 
-  // The last residuals: what is beyond each wall.
-  void add_walls(double* residuals, double* jacobian) {
+  // The last residuals of interval l: what is beyond each wall.
+  void add_walls(int l, double* residuals, double* jacobian) {
     const int n = shared_.dynamics.dof;
+    for (int j = 0; j < n; ++j) at_[j] = middles_.q()[j * kLanes + l];
     shared_.walls.evaluate(
-        qm_.data(), s_.data(), jacobian != nullptr ? gradients_.data() : nullptr, nullptr);
+        at_.data(), s_.data(), jacobian != nullptr ? gradients_.data() : nullptr, nullptr);
     for (int w = 0; w < shared_.walls.size(); ++w) {
       const int row = shared_.terms() + w;
       const double weight =
           std::sqrt(shared_.h * shared_.options.wall_rate) / shared_.options.wall_sizes[w];
       const bool beyond = s_[w] < 0;
-      residuals[row] = beyond ? weight * s_[w] : 0;
+      residuals[row * kLanes + l] = beyond ? weight * s_[w] : 0;
       if (jacobian == nullptr) continue;
-      double* to = jacobian + row * 2 * n;
+      double* to = jacobian + row * 2 * n * kLanes + l;
       for (int i = 0; i < n; ++i) {
-        to[i] = to[n + i] = beyond ? 0.5 * weight * gradients_[w * n + i] : 0;
+        to[i * kLanes] = to[(n + i) * kLanes] = beyond ? 0.5 * weight * gradients_[w * n + i] : 0;
       }
     }
   }
 
   const Transcription& shared_;
-  std::vector<double> qm_;
-  std::vector<double> v_;
+  Middles middles_;
   std::vector<double> terms_;
   std::vector<double> derivative_;
+  std::vector<double> at_;
   std::vector<double> s_;
   std::vector<double> gradients_;
 };
 
-// Reads the terms of all intervals of a path.
+// Reads the terms of all intervals of a path, up to the first that cannot be evaluated.
 struct PathTerms {
   double action = 0;
   double violation = 0;
@@ -127,31 +175,36 @@ PathTerms terms_of(const Dynamics& dynamics, double h, const Path& path) {
   const int n = dynamics.dof;
   const int k = dynamics.transcribed;
   PathTerms result;
-  std::vector<double> qm(n), v(n), terms(n + k + 1);
+  Middles middles(n);
+  std::vector<double> terms((n + k + 1) * kLanes);
   double largest_speed = 0;
   double largest_constraint = 0;
   double kinetic = 0;
   double speed = 0;
   for (int i = 0; i < path.intervals; ++i) {
-    double v2 = 0;
-    for (int j = 0; j < n; ++j) {
-      qm[j] = 0.5 * (path.configuration(i)[j] + path.configuration(i + 1)[j]);
-      v[j] = (path.configuration(i + 1)[j] - path.configuration(i)[j]) / h;
-      v2 += v[j] * v[j];
+    const int l = i % kLanes;
+    if (l == 0) {
+      middles.set(path.configuration(i), std::min(kLanes, path.intervals - i), h);
+      if (!dynamics.midpoints(middles.q(), middles.v(), terms)) break;
     }
-    if (!dynamics.midpoint(qm, v, terms)) continue;
+    double v2 = 0;
     double r2 = 0;
     double c2 = 0;
-    for (int j = 0; j < n; ++j) r2 += terms[j] * terms[j];
-    for (int j = 0; j < k; ++j) c2 += terms[n + j] * terms[n + j];
-    result.constraint.insert(result.constraint.end(), terms.begin() + n, terms.begin() + n + k);
-    result.action += h * (0.5 * r2 - terms[n + k]);
+    for (int j = 0; j < n; ++j) v2 += middles.v()[j * kLanes + l] * middles.v()[j * kLanes + l];
+    for (int j = 0; j < n; ++j) r2 += terms[j * kLanes + l] * terms[j * kLanes + l];
+    for (int j = n; j < n + k; ++j) {
+      const double c = terms[j * kLanes + l];
+      c2 += c * c;
+      result.constraint.push_back(c);
+    }
+    const double potential = terms[(n + k) * kLanes + l];
+    result.action += h * (0.5 * r2 - potential);
     kinetic += r2;
     speed += v2;
     largest_speed = std::max(largest_speed, std::sqrt(v2));
     largest_constraint = std::max(largest_constraint, std::sqrt(c2));
-    result.max_potential = i == 0 ? terms[n + k] : std::max(result.max_potential, terms[n + k]);
-    result.potential = result.potential || terms[n + k] != 0;
+    result.max_potential = i == 0 ? potential : std::max(result.max_potential, potential);
+    result.potential = result.potential || potential != 0;
   }
   result.violation = largest_speed > 0 ? largest_constraint / largest_speed : 0;
   result.mass = speed > 0 ? kinetic / speed : 1;
@@ -181,11 +234,12 @@ Relaxation relax(const BoundaryValueProblem& problem,
 
   Relaxation result;
   if (state.constraint.size() != lambda.size() || !std::isfinite(state.action)) return result;
-  Interval interval(shared);
+  Intervals intervals(shared);
   const int k = dynamics.transcribed;
-  const ChainResiduals residuals = [&](int i, const double* q, double* values, double* jacobian) {
-    return interval.evaluate(lambda.data() + i * k, q, values, jacobian);
-  };
+  const ChainResiduals residuals =
+      [&](int first, int count, const double* q, double* values, double* jacobian) {
+        return intervals.evaluate(count, lambda.data() + first * k, q, values, jacobian);
+      };
   ChainOptions inner;
   inner.max_iterations = options.inner_iterations;
   inner.radius = 1 / options.caution;
