@@ -134,6 +134,24 @@ TEST(LimitedGeodesics, CostLessWithMoreFreedom) {
 }
 
 // The same problem on the grid, extrapolated: another route to the same action.
+// The best extremal without limits keeps to the wide limit, but it is past a conjugate time. What
+// keeps to the narrow limit is shorter, and it keeps to the wide one, too.
+TEST(LimitedGeodesics, AreSearchedWhereTheFreeOneIsNoMinimum) {
+  const auto action = [](const std::string& limit) {
+    std::string text = load_scene(CARNOT_SOURCE_DIR "/lib/carnot/scenes/bicycle.scene").text();
+    const std::string one = "length = 1";
+    text.replace(text.find(one), one.size(), "length = 2");
+    GeodesicOptions options;
+    options.starts = 32;
+    const BoundaryValueProblem problem(
+        test::from_text(text + "\nlimit " + limit + "\n"), {0, 0, 0, 0}, {0, 1, 0, 0});
+    const GeodesicReport report = find_geodesics(problem, options);
+    EXPECT_EQ(report.status, GeodesicStatus::kConverged) << report.message;
+    return report.geodesics.empty() ? 0 : report.geodesics.front().action;
+  };
+  EXPECT_LE(action("-1.3 < delta < 1.3"), action("-1.2 < delta < 1.2"));
+}
+
 TEST(LimitedGeodesics, AgreeWithTheirGrid) {
   const BoundaryValueProblem problem = parking("limit -0.3 < phi - theta < 0.3\n");
   // The limit from C++ has no arcs, so its answer is that of the grid.

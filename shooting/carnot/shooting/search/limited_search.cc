@@ -229,7 +229,8 @@ LimitedAnswer LimitedSearch::run() {
   const int threads = thread_count(options_.threads);
   for (const Geodesic& geodesic : free_) {
     if (auto judged = shared_.within(geodesic)) answer.geodesics.push_back(std::move(*judged));
-    const bool best = &geodesic == &free_.front();
+    // What is past a conjugate time is no minimum: something is shorter, with the limits perhaps.
+    const bool best = &geodesic == &free_.front() && geodesic.label != Label::kConjugatePassed;
     if (best && !answer.geodesics.empty() && options_.count == 1 && !options_.all) return answer;
   }
   for (const Geodesic& geodesic : free_) {
