@@ -76,11 +76,21 @@ TEST(StoppingPolicy, EndsWhenTheLeastActionIsHitOftenEnough) {
   EXPECT_TRUE(policy.ends({16, 16, 0, 16}, {3, 1}));
   EXPECT_FALSE(policy.ends({16, 16, 0, 16}, {2, 1}));
   EXPECT_FALSE(policy.ends({16, 16, 0, 15}, {8, 2})) << "a rival asks for more";
-  EXPECT_TRUE(policy.ends({24, 24, 0, 16}, {8, 2}));
+  EXPECT_FALSE(policy.ends({24, 24, 0, 23}, {8, 2})) << "twelve of them";
+  EXPECT_TRUE(policy.ends({24, 24, 0, 24}, {8, 2}));
   // Sooner only without a rival.
   EXPECT_TRUE(policy.ends({12, 12, 0, 12}, {8, 1}));
   EXPECT_FALSE(policy.ends({12, 12, 0, 12}, {7, 1}));
   EXPECT_FALSE(policy.ends({12, 12, 0, 16}, {12, 2}));
+}
+
+TEST(StoppingPolicy, GoesOnWhereSomethingWasMissedByChaosEstimate) {
+  StoppingPolicy policy(options_for(1), true, false);
+  EXPECT_TRUE(policy.ends({24, 24, 0, 24}, {8, 1, 0.5}));
+  EXPECT_FALSE(policy.ends({24, 24, 0, 24}, {8, 1, 1}));
+  // Starts of drift say too little for an estimate.
+  policy.plan_for(8, 40);
+  EXPECT_TRUE(policy.ends({24, 24, 0, 24}, {8, 1, 1}));
 }
 
 }  // namespace

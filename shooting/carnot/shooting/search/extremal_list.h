@@ -14,8 +14,9 @@ namespace carnot::internal {
 
 // How sure it is that nothing has less action than the best extremal.
 struct Competition {
-  int hits = 0;    // of the least action; mirror partners count together
-  int rivals = 0;  // extremals whose action is near the least, the best among them
+  int hits = 0;       // of the least action; mirror partners count together
+  int rivals = 0;     // extremals whose action is near the least, the best among them
+  double missed = 0;  // how many extremals more there are, by Chao's estimate
 };
 
 class ExtremalList {

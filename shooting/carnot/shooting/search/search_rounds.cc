@@ -42,7 +42,7 @@ void Search::relax_round(int count) {
   });
   tally_.drawn += count;
   const Polished polished = absorb(starts);
-  shoot_along_relaxed(starts);
+  if (extremals_.empty() || policy_.wants_more()) shoot_along_relaxed(starts);
   const bool artefacts = polished.failed >= kArtefacts && polished.failed > polished.good;
   int stiffer = 0;
   int found = 0;

@@ -20,12 +20,8 @@ constexpr int kMinStarts = 16;
 constexpr int kMinNear = 24;
 // The least number where most starts agree. 12 starts miss with 3 % what one in four leads to.
 constexpr int kMinEasy = 12;
-// The limit where the best extremal keeps changing. 96 starts miss with 1 % what one in 21 leads
-// to.
-constexpr int kMaxStarts = 96;
-// The limit where all extremals are wanted. 240 starts miss with 1 % what one in 52 leads to. It
-// was 480 before there were sweeps.
-constexpr int kMaxStartsAll = 240;
+// The limit. 240 starts miss with 1 % what one in 52 leads to.
+constexpr int kMaxStarts = 240;
 // So many times the limit of starts do not count where they are blocked: at most three times the
 // limit are drawn.
 constexpr int kMaxBlocked = 2;
@@ -38,7 +34,9 @@ constexpr int kEnoughHits = 3;
 constexpr int kEnoughDriftHits = 5;
 // Starts that converge before a search ends, for each rival: where there is one, there may be
 // another. It was raised from 5 for problems whose extremals are nearly of one action.
-constexpr int kConvergedPerRival = 8;
+constexpr int kConvergedPerRival = 12;
+// So many extremals that were missed by Chao's estimate are one too many.
+constexpr double kMostMissed = 1;
 // The share of the starts of an easy problem that converge: 9 of 12.
 constexpr double kMostConverged = 0.75;
 // The share of them that hit the least action: 8 of 12.
@@ -52,13 +50,12 @@ StoppingPolicy::StoppingPolicy(const GeodesicOptions& options, bool by_paths, bo
       count_(static_cast<std::size_t>(options.count)),
       given_(options.starts > 0),
       near_(near),
-      limit_(given_ ? options.starts
-             : all_ ? kMaxStartsAll
-                    : kMaxStarts),
+      limit_(given_ ? options.starts : kMaxStarts),
       enough_hits_(kEnoughHits),
       sweeps_(by_paths && wants_more_ && !given_ ? kSweeps : 0) {}
 
 void StoppingPolicy::plan_for(int scaled, int actuated) {
+  by_drift_ = true;
   first_ = scaled;
   enough_hits_ = kEnoughDriftHits;
   if (!given_) limit_ = std::min(limit_, scaled + actuated);
@@ -88,7 +85,8 @@ bool StoppingPolicy::may_end(const SearchTally& tally) const {
 bool StoppingPolicy::ends(const SearchTally& tally, const Competition& competition) const {
   const bool clear = competition.rivals <= 1 && competition.hits >= kMostHits * tally.starts;
   if (tally.starts < first_ + kMinStarts && !clear) return false;
-  return competition.hits >= enough_hits_ &&
+  const bool complete = by_drift_ || competition.missed < kMostMissed;
+  return complete && competition.hits >= enough_hits_ &&
          tally.converged >= kConvergedPerRival * competition.rivals;
 }
 

@@ -1,8 +1,10 @@
 // When a search for extremals has seen enough.
 //
 // The search for one geodesic ends when the least action has been hit often enough, and the more
-// often the more rivals it has. It ends somewhat sooner where most starts converge, most of them to
-// one extremal, and nothing comes near its action. A search for more goes on to a limit.
+// starts converged the more rivals it has, and nothing seems to be missed: extremals that were hit
+// once only say that there are others (Chao, Scand. J. Statist. 11, 1984). It ends somewhat sooner
+// where most starts converge, most of them to one extremal, and nothing comes near its action. A
+// search for more goes on to a limit.
 #pragma once
 
 #include "carnot/shooting/geodesic_options.h"
@@ -53,6 +55,7 @@ class StoppingPolicy {
   bool given_;  // the number of starts is that of the options
   bool near_;
   int limit_;
+  bool by_drift_ = false;
   int first_ = 0;  // starts that are tried in any case
   int enough_hits_;
   int sweeps_;
