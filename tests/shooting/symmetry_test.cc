@@ -85,6 +85,12 @@ TEST(Symmetry, TheStraightLineHasAll) {
   expect_partners(test::straight_ahead(), {1, 0, 0, 0}, 1);  // the mirror keeps both ends
 }
 
+TEST(Symmetry, WhatIsNearlySymmetricIsNot) {
+  constexpr double kBeside = 1e-8;
+  EXPECT_EQ(symmetries_of(test::vehicle({0, 0, 0, 0}, {0, 1, 0, 0})).size(), 1U);
+  EXPECT_EQ(symmetries_of(test::vehicle({0, 0, 0, 0}, {0, 1, kBeside, 0})).size(), 0U);
+}
+
 TEST(Symmetry, AGeneralProblemHasNone) {
   expect_partners(test::vehicle({0, 0, 0, 0}, {2, 1, 0.5, 0.7}), {2.12, -0.27, 1.17, 1.38}, 0);
 }

@@ -79,6 +79,7 @@ TEST(Verification, AFamilyIsSingular) {
     complete(problem, 0, *extremal);
     EXPECT_EQ(extremal->geodesic.label, Label::kSingular);
     EXPECT_EQ(extremal->geodesic.family_dimension, 1);
+    EXPECT_EQ(extremal->geodesic.morse_index, 0) << "T is conjugate, but not passed";
     EXPECT_EQ(extremal->geodesic.abnormal, false);
     members.push_back(*extremal);
   }
