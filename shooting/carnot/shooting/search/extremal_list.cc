@@ -35,7 +35,7 @@ std::size_t ExtremalList::best() const {
 }
 
 Competition ExtremalList::competition() const {
-  constexpr double kRival = 0.05;  // above the least action, relative
+  constexpr double kRival = 0.03;  // above the least action, relative
   const double least = least_action();
   Competition competition;
   for (std::size_t i = 0; i < list_.size(); ++i) {
@@ -43,7 +43,6 @@ Competition ExtremalList::competition() const {
     if (above <= kSameAction * std::abs(least)) competition.hits += hits_[i];
     if (above <= kRival * std::abs(least)) ++competition.rivals;
   }
-  competition.missed = missed_estimate(hits());
   return competition;
 }
 

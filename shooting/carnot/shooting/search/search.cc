@@ -6,6 +6,7 @@
 
 #include "carnot/numerics/parallel.h"
 #include "carnot/shooting/extremal/classification.h"
+#include "carnot/shooting/extremal/ranking.h"
 #include "carnot/shooting/search/polish.h"
 
 namespace carnot::internal {
@@ -106,7 +107,9 @@ bool Search::settled() {
   const ConjugateTimes& conjugate = conjugate_times_of(problem_, extremals_[extremals_.best()]);
   descends_ = conjugate.known && conjugate.times.size() > std::size_t(conjugate.at_end);
   if (policy_.wants_more() || descends_) return false;
-  return policy_.ends(tally_, extremals_.competition());
+  Competition competition = extremals_.competition();
+  competition.missed = missed_estimate(hits());
+  return policy_.ends(tally_, competition);
 }
 
 void Search::note(const Path& path, std::vector<std::size_t>& fresh) {

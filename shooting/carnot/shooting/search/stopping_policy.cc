@@ -34,7 +34,7 @@ constexpr int kEnoughHits = 3;
 constexpr int kEnoughDriftHits = 5;
 // Starts that converge before a search ends, for each rival: where there is one, there may be
 // another. It was raised from 5 for problems whose extremals are nearly of one action.
-constexpr int kConvergedPerRival = 12;
+constexpr int kConvergedPerRival = 10;
 // So many extremals that were missed by Chao's estimate are one too many.
 constexpr double kMostMissed = 1;
 // The share of the starts of an easy problem that converge: 9 of 12.
