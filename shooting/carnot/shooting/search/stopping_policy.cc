@@ -5,9 +5,11 @@
 namespace carnot::internal {
 namespace {
 
-// No measurement of these values is on record, and how much a search depends on them is not known.
-// What is said beside them is what they do. The percentages are arithmetic: if one start in m leads
-// to an extremal, and starts are independent, n of them miss it with probability (1 - 1/m)^n.
+// The percentages are arithmetic: if one start in m leads to an extremal, and starts are
+// independent, n of them miss it with probability (1 - 1/m)^n. What is measured was measured on 420
+// random targets, from the origin: positions within 1 (vehicle, unicycle, trailer1, trailer2,
+// falling-cat) and within 15 (vehicle, trailer1). Where nothing is said, what stands beside a value
+// is what it does, and no measurement of it is on record.
 
 // Starts between two looks at the list. Where one geodesic is wanted, rounds between 8 and 16
 // starts are half as long: the looks are after 8, 12, 16, 24, 32, ... starts.
@@ -20,7 +22,8 @@ constexpr int kMinStarts = 16;
 constexpr int kMinNear = 24;
 // The least number where most starts agree. 12 starts miss with 3 % what one in four leads to.
 constexpr int kMinEasy = 12;
-// The limit. 240 starts miss with 1 % what one in 52 leads to.
+// The limit. 240 starts miss with 1 % what one in 52 leads to. With 96, and without an estimate of
+// what is missed, 11 of the 420 answers were not the least that is known; now all are.
 constexpr int kMaxStarts = 240;
 // So many times the limit of starts do not count where they are blocked: at most three times the
 // limit are drawn.
@@ -33,9 +36,11 @@ constexpr int kEnoughHits = 3;
 // least of them is the least.
 constexpr int kEnoughDriftHits = 5;
 // Starts that converge before a search ends, for each rival: where there is one, there may be
-// another. It was raised from 5 for problems whose extremals are nearly of one action.
+// another. With 8, trailer1 to (0, 0.5, 0, 0) ended without the least action, which one start in
+// four leads to. With 12, sideways parking takes 80 starts, where 32 hit the least ten times.
 constexpr int kConvergedPerRival = 10;
-// So many extremals that were missed by Chao's estimate are one too many.
+// So many extremals that were missed by Chao's estimate are one too many. Of extremals near the
+// least alone the estimate is too low: 3 of the 420 were missed, in 0.56 of the time.
 constexpr double kMostMissed = 1;
 // The share of the starts of an easy problem that converge: 9 of 12.
 constexpr double kMostConverged = 0.75;
