@@ -305,7 +305,7 @@ void expect_same(const std::vector<double>& a, const std::vector<double>& b) {
 // of them, in every second sample.
 TYPED_TEST(MidpointDerivativesTest, SideBySideIsOneByOne) {
   constexpr int n = TypeParam::kDof;
-  constexpr int kTerms = TestFixture::kTerms;
+  constexpr int count = TestFixture::kTerms;
   constexpr int m = TestFixture::kUnknowns;
   constexpr double kFar = 4e6;
   constexpr double h = 0.3;
@@ -323,7 +323,7 @@ TYPED_TEST(MidpointDerivativesTest, SideBySideIsOneByOne) {
       x[(2 * n - 1) * kTranscriptionLanes + 5] += kFar;
     }
     const double* const v = x.data() + n * kTranscriptionLanes;
-    Packed terms = packed(kTerms), slopes = packed(kTerms * 2 * n), again = packed(kTerms);
+    Packed terms = packed(count), slopes = packed(count * 2 * n), again = packed(count);
     Packed gradient = packed(m), hessian = packed(m * m), first = packed(m);
     ASSERT_TRUE(packed_midpoint_terms(f, &this->calls_, x.data(), v, terms.data(), slopes.data()));
     ASSERT_TRUE(packed_midpoint_terms(f, &this->calls_, x.data(), v, again.data(), nullptr));
@@ -331,7 +331,7 @@ TYPED_TEST(MidpointDerivativesTest, SideBySideIsOneByOne) {
     packed_discrete_lagrangian(f, &this->calls_, h, x.data(), first.data(), nullptr);
     for (int l = 0; l < kTranscriptionLanes; ++l) {
       const std::vector<double> own = lane(x, l);
-      std::vector<double> a(kTerms), b(kTerms * 2 * n), c(m), d(m * m);
+      std::vector<double> a(count), b(count * 2 * n), c(m), d(m * m);
       ASSERT_TRUE(this->calls_.midpoint(own.data(), own.data() + n, a.data(), b.data()));
       expect_same(lane(terms, l), a);
       expect_same(lane(again, l), a);
@@ -347,20 +347,20 @@ TYPED_TEST(MidpointDerivativesTest, SideBySideIsOneByOne) {
 // One interval that cannot be evaluated is told, and the others are right all the same.
 TYPED_TEST(MidpointDerivativesTest, OneFailureSideBySideDoesNotSpoilTheOthers) {
   constexpr int n = TypeParam::kDof;
-  constexpr int kTerms = TestFixture::kTerms;
+  constexpr int count = TestFixture::kTerms;
   constexpr int kBroken = 3;
   Packed x = packed(2 * n);
   for (double& number : x) number = std::uniform_real_distribution<double>(-1, 1)(this->generator_);
   for (int j = 0; j < n; ++j) {
     x[j * kTranscriptionLanes + kBroken] = std::numeric_limits<double>::quiet_NaN();
   }
-  Packed terms = packed(kTerms);
+  Packed terms = packed(count);
   const double* const v = x.data() + n * kTranscriptionLanes;
   const bool good = packed_midpoint_terms(
       this->calls_.functions(), &this->calls_, x.data(), v, terms.data(), nullptr);
   for (int l = 0; l < kTranscriptionLanes; ++l) {
     const std::vector<double> own = lane(x, l);
-    std::vector<double> a(kTerms);
+    std::vector<double> a(count);
     const bool found = this->calls_.midpoint(own.data(), own.data() + n, a.data(), nullptr);
     if (l == kBroken) {
       EXPECT_EQ(good, found);
