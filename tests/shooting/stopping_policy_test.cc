@@ -76,8 +76,8 @@ TEST(StoppingPolicy, EndsWhenTheLeastActionIsHitOftenEnough) {
   EXPECT_TRUE(policy.ends({16, 16, 0, 16}, {3, 1}));
   EXPECT_FALSE(policy.ends({16, 16, 0, 16}, {2, 1}));
   EXPECT_FALSE(policy.ends({16, 16, 0, 15}, {8, 2})) << "a rival asks for more";
-  EXPECT_FALSE(policy.ends({24, 24, 0, 23}, {8, 2})) << "twelve of them";
-  EXPECT_TRUE(policy.ends({24, 24, 0, 24}, {8, 2}));
+  EXPECT_FALSE(policy.ends({24, 24, 0, 19}, {8, 2})) << "ten of them";
+  EXPECT_TRUE(policy.ends({24, 24, 0, 20}, {8, 2}));
   // Sooner only without a rival.
   EXPECT_TRUE(policy.ends({12, 12, 0, 12}, {8, 1}));
   EXPECT_FALSE(policy.ends({12, 12, 0, 12}, {7, 1}));
