@@ -261,10 +261,10 @@ ConjugateTimes follow(double fraction,
   Frame clear = frame;  // the last frame whose count is beyond doubt
   int counted = 0;
   const auto count_to = [&](int count, const Frame& until) {
-    for (; counted < count; ++counted) {
+    for (; counted < count && result.times.size() < options.most; ++counted) {
       result.times.push_back(planes.locate(clear, until.t, counted));
     }
-    return count == counted;
+    return count == counted || result.times.size() == options.most;
   };
   const long per_segment = std::max(1L, (steps + knots.segments - 1) / knots.segments);
   for (long i = 1; i <= per_segment * knots.segments; ++i) {
@@ -280,13 +280,18 @@ ConjugateTimes follow(double fraction,
     if (i == per_segment * knots.segments || planes.ambiguous(frame)) continue;
     if (!count_to(static_cast<int>(std::lround(planes.count(frame))), frame)) return result;
     clear = frame;
+    if (result.times.size() == options.most) {
+      result.known = true;
+      return result;
+    }
   }
   if (planes.doubt() > options.doubt) return result;
   result.at_end = planes.near_zero(frame, options.doubt);
   const double tolerance = result.at_end > 0 ? options.doubt : 0;
   if (!count_to(static_cast<int>(std::lround(planes.count(frame, tolerance))), frame))
     return result;
-  result.times.insert(result.times.end(), result.at_end, problem.time);
+  const auto at_end = std::min<std::size_t>(result.at_end, options.most - result.times.size());
+  result.times.insert(result.times.end(), at_end, problem.time);
   if (problem.has_free_target()) {
     if (graph->kernel > 0) return result;  // not all movements of the target are possible then
     result.target = planes.form_at(frame, problem, std::max(options.doubt, planes.doubt()));

@@ -23,6 +23,8 @@
 // (Agrachev & Sachkov, Control Theory from the Geometric Viewpoint, 2004, ch. 21).
 #pragma once
 
+#include <cstddef>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -50,6 +52,7 @@ struct ConjugateTimesOptions {
   // told with an extremal that is known only so well.
   double doubt = 1e-8;
   double precision = 1e-13;  // relative, of the times; with 1 they are counted, not located
+  std::size_t most = std::numeric_limits<std::size_t>::max();  // only so many, the first ones
 };
 
 // Along the extremal through `knots`; `steps` of the method over the whole time. To locate a time
