@@ -38,11 +38,14 @@ bool tells_motion(const BoundaryValueProblem& problem) {
 }
 
 // Completes mirror and reversal to a map of `from` to the image of `from`; false when `to` is then
-// not mapped to the image of `to`.
-bool complete_map(const BoundaryValueProblem& problem, ProblemSymmetry& s) {
+// not mapped to the image of `to`. The images are the start and `place`.
+bool complete_map(const BoundaryValueProblem& problem,
+                  const std::vector<double>& place,
+                  double tolerance,
+                  ProblemSymmetry& s) {
   const Symmetries& of = problem.dynamics.info.symmetries;
-  const std::vector<double>& image_from = s.reverses ? problem.to : problem.from;
-  const std::vector<double>& image_to = s.reverses ? problem.from : problem.to;
+  const std::vector<double>& image_from = s.reverses ? place : problem.from;
+  const std::vector<double>& image_to = s.reverses ? problem.from : place;
   const bool moved = tells_motion(problem);
   s.shift.assign(problem.from.size(), 0.0);
   if (moved && !of.angles.empty()) {
@@ -59,7 +62,7 @@ bool complete_map(const BoundaryValueProblem& problem, ProblemSymmetry& s) {
   for (std::size_t j = 0; j < first.size(); ++j) {
     const double size = 1 + std::abs(image_from[j]) + std::abs(image_to[j]);
     const auto apart = [&](double a, double b) {
-      return std::abs(a + s.shift[j] - b) > kSymmetryRoundOff * size;
+      return std::abs(a + s.shift[j] - b) > tolerance * size;
     };
     const int k = static_cast<int>(j);
     const bool free_from = problem.is_free_from(k);
@@ -74,6 +77,12 @@ bool complete_map(const BoundaryValueProblem& problem, ProblemSymmetry& s) {
 }  // namespace
 
 std::vector<ProblemSymmetry> symmetries_of(const BoundaryValueProblem& problem) {
+  return symmetries_onto(problem, problem.to, kSymmetryRoundOff);
+}
+
+std::vector<ProblemSymmetry> symmetries_onto(const BoundaryValueProblem& problem,
+                                             const std::vector<double>& place,
+                                             double tolerance) {
   std::vector<std::vector<double>> mirrors = problem.dynamics.info.symmetries.mirrors;
   mirrors.insert(mirrors.begin(), std::vector<double>(problem.from.size(), 1.0));
   std::vector<ProblemSymmetry> result;
@@ -82,7 +91,7 @@ std::vector<ProblemSymmetry> symmetries_of(const BoundaryValueProblem& problem) 
       if (i == 0 && !reverses) continue;
       if (reverses && !problem.dynamics.has_transcription()) continue;  // drift, magnetic fields
       ProblemSymmetry symmetry{mirrors[i], 0, {}, reverses};
-      if (complete_map(problem, symmetry)) result.push_back(symmetry);
+      if (complete_map(problem, place, tolerance, symmetry)) result.push_back(symmetry);
     }
   }
   return result;

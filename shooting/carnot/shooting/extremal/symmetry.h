@@ -26,6 +26,13 @@ void turn_plane(const Symmetries& of, double angle, double* x);
 
 std::vector<ProblemSymmetry> symmetries_of(const BoundaryValueProblem& problem);
 
+// The same, of maps that keep the start and take `to` to another place, such as an image of it on
+// the cover. Without free ends. Ends are known to `tolerance`, relative to one plus the
+// coordinates.
+std::vector<ProblemSymmetry> symmetries_onto(const BoundaryValueProblem& problem,
+                                             const std::vector<double>& place,
+                                             double tolerance);
+
 // The partner of the extremal through `knots`.
 Knots partner(const SceneInfo& info, const ProblemSymmetry& symmetry, const Knots& knots);
 
