@@ -1,0 +1,313 @@
+#include "carnot/shooting/cut_time.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "carnot/shooting/extremal/conjugate_times.h"
+#include "carnot/shooting/extremal/symmetry.h"
+#include "carnot/shooting/find_geodesics.h"
+#include "carnot/shooting/front/meeting.h"
+#include "carnot/shooting/front/ray.h"
+#include "carnot/shooting/linear/dense.h"
+#include "carnot/shooting/problem/scales.h"
+#include "carnot/shooting/search/deadline.h"
+#include "carnot/shooting/shoot/end_point.h"
+
+namespace carnot {
+
+using namespace internal;
+
+namespace {
+
+// A path that is shorter than the extremal by less, relative, is as long: ends of searches are good
+// to 1e-10.
+constexpr double kAsLong = 1e-9;
+
+// All times are those of unit speed.
+class CutSearch {
+ public:
+  CutSearch(const Dynamics& dynamics,
+            const std::vector<double>& from,
+            std::vector<double> p,
+            double speed,
+            const CutTimeOptions& options)
+      : ray_(dynamics, from, std::move(p)),
+        options_(options),
+        deadline_(options.time_limit),
+        scale_(start_scales({dynamics, from, from}).radian) {
+    horizon_ = options.max_time > 0 ? options.max_time * speed : natural_horizon();
+  }
+
+  void run() {
+    find_conjugate_time();
+    if (bracket()) {
+      narrow();
+    } else if (!stopped_ && conjugate_) {
+      meet_neighbours();
+      if (!cut_) label_ = "conjugate";
+      if (!cut_) cut_ = conjugate_;
+    }
+    if (partner_) label_ = name_of_partner();
+  }
+
+  // In the times of the extremal as it was given.
+  [[nodiscard]] CutTime result(double speed) const {
+    CutTime cut;
+    cut.message = message_;
+    cut.max_time = horizon_ / speed;
+    cut.error = error_ / speed;
+    cut.searches = searches_;
+    cut.label = label_;
+    if (cut_) cut.cut_time = *cut_ / speed;
+    if (conjugate_) cut.conjugate_time = *conjugate_ / speed;
+    if (partner_) {
+      cut.partner_p0 = partner_->p;
+      for (double& x : *cut.partner_p0) x *= speed;
+    }
+    const bool known = message_.empty() && !stopped_;
+    cut.status = known ? CutStatus::kConverged : CutStatus::kNotConverged;
+    if (interrupted_) cut.status = CutStatus::kInterrupted;
+    if (interrupted_) cut.message = "interrupted";
+    return cut;
+  }
+
+ private:
+  // See CutTimeOptions. The velocity turns at the rate |dv/dt| / |v|, by differences. Coordinates
+  // that grow in the meantime only add to it, so it is the least rate that counts.
+  [[nodiscard]] double natural_horizon() const {
+    constexpr double kTurns = 16;       // radians of the velocity; a cut is after a turn or two
+    constexpr double kStraight = 1e-3;  // what turns less in a natural length is straight
+    constexpr int kSamples = 64;
+    const double longest = kNaturalHorizon * scale_;
+    const double h = longest / kSamples;
+    const long steps = ray_.enough_steps(h);
+    std::vector<double> z = ray_.start();
+    double turns = 0;
+    Motion before = motion_at(ray_.dynamics(), z.data());
+    for (int i = 0; i < kSamples; ++i) {
+      if (!ray_.dynamics().flow(StepPlan::equal(i * h, h, steps), z).completed()) break;
+      const Motion after = motion_at(ray_.dynamics(), z.data());
+      const double turned = (after.velocity - before.velocity).norm() / after.velocity.norm();
+      const double rate = turned / h;
+      if (rate * scale_ > kStraight) turns = turns > 0 ? std::min(turns, rate) : rate;
+      before = after;
+    }
+    return turns > 0 ? std::max(longest, kTurns / turns) : longest;
+  }
+
+  bool go_on() {
+    if (deadline_.passed() && !stopped_) {
+      stopped_ = true;
+      message_ = "the time limit was up before the cut time was known";
+    }
+    if (!stopped_ && options_.progress && !options_.progress(0)) stopped_ = interrupted_ = true;
+    return !stopped_;
+  }
+
+  // The first one up to the horizon, on stretches that double: to locate it costs in proportion to
+  // the stretch.
+  void find_conjugate_time() {
+    constexpr double kFirst = 1.0 / 64;
+    ConjugateTimesOptions first;
+    first.most = 1;
+    for (double t = std::min(horizon_, kFirst * scale_); go_on(); t = std::min(2 * t, horizon_)) {
+      const long steps = ray_.enough_steps(t);
+      const BoundaryValueProblem problem = ray_.problem(t, steps);
+      const Knots knots = knots_of(problem, ray_.p(), 1, steps);
+      const ConjugateTimes times = conjugate_times(problem, knots, steps, first);
+      // An abnormal extremal has many momenta: what is conjugate with one need not be so with
+      // others.
+      const bool abnormal = times.corank.value_or(0) > 0;
+      if (times.known && !abnormal && !times.times.empty()) {
+        conjugate_ = times.times.front();
+        return;
+      }
+      if (t >= horizon_) return;
+    }
+  }
+
+  // Extremals to where the ray is at t, least action first; the ray is one of them where it was
+  // found. Where what is found is longer than the ray, the search was too short and is repeated.
+  std::vector<Rival> search(double t) {
+    constexpr int kAttempts = 3;
+    const long steps = ray_.enough_steps(t);
+    const BoundaryValueProblem problem = ray_.problem(t, steps);
+    GeodesicOptions search;
+    search.samples = 0;
+    search.mod_angles = options_.mod_angles;
+    search.threads = options_.threads;
+    search.progress = [this](double) { return go_on(); };
+    std::vector<Rival> found;
+    for (int attempt = 0; attempt < kAttempts && go_on(); ++attempt) {
+      search.seed = options_.seed + static_cast<std::uint64_t>(searches_++);
+      search.time_limit = std::max(1e-3, deadline_.left());
+      for (const Geodesic& geodesic : find_geodesics(problem, search).geodesics) {
+        Rival rival{geodesic.p0, std::vector<double>(ray_.from().size(), 0.0), t};
+        for (std::size_t j = 0; j < geodesic.windings.size(); ++j) {
+          rival.offset[j] = geodesic.windings[j] * ray_.dynamics().info.configuration[j].period;
+        }
+        found.push_back(std::move(rival));
+      }
+      const auto as_short = [&](const Rival& rival) { return excess_of(ray_, rival) <= kAsLong; };
+      if (std::any_of(found.begin(), found.end(), as_short)) break;
+    }
+    return found;
+  }
+
+  [[nodiscard]] bool has_shorter(const std::vector<Rival>& rivals) const {
+    return std::any_of(rivals.begin(), rivals.end(), [&](const Rival& rival) {
+      return excess_of(ray_, rival) < -kAsLong;
+    });
+  }
+
+  // Finds a time low_ at which the ray is the shortest, and a time high_ at which it is not.
+  bool bracket() {
+    // Just before the conjugate time: what is shorter there is not one of its neighbours.
+    constexpr double kBefore = 1e-4;
+    const double last = conjugate_ ? (1 - kBefore) * *conjugate_ : horizon_;
+    // Near a conjugate time a search tells at once. Elsewhere rivals that cross early are easier to
+    // find early.
+    constexpr double kNear = 8;
+    double t = last <= kNear * scale_ ? last : std::min(last, scale_);
+    while (go_on()) {
+      if (look_at(t)) return true;
+      if (t >= last) break;
+      t = 2 * t >= last ? last : 2 * t;
+    }
+    return false;
+  }
+
+  // Sets cut_ and partner_ to the first meeting before `end` with one of the rivals.
+  bool nearest_meeting(double end) {
+    bool better = false;
+    for (const Rival& rival : rivals_) {
+      const long steps = ray_.enough_steps(rival.t);
+      const auto meeting = meet(ray_, rival, steps);
+      constexpr double kSameTime = 1e-10;  // both are the same to what is known of them
+      if (!meeting || !(meeting->rival.t < (1 - kSameTime) * end)) continue;
+      end = meeting->rival.t;
+      cut_ = end;
+      partner_ = meeting->rival;
+      error_ = meeting->error;
+      better = true;
+    }
+    return better;
+  }
+
+  // Near the edge of the cut locus the partner is a neighbour, and meets the ray so shortly before
+  // the conjugate time that no search tells.
+  void meet_neighbours() {
+    constexpr double kSameTime = 1e-10;
+    constexpr double kEarliest = 0.9;  // of the conjugate time
+    const double t = *conjugate_;
+    // What neighbours share magnifies the errors of the flow.
+    const long steps = 2 * ray_.enough_steps(t);
+    const auto end = ray_.end(t, steps);
+    if (!end) return;
+    const auto n = static_cast<Eigen::Index>(ray_.p().size());
+    const Eigen::VectorXd still = right_singular(end->tangent.topRows(n)).vectors.col(n - 1);
+    for (const double side : {1.0, -1.0}) {
+      const auto meeting = meet_neighbour(ray_, side * still, t, steps);
+      if (!meeting || meeting->rival.t < kEarliest * t) continue;
+      if (!(meeting->rival.t < (1 - kSameTime) * cut_.value_or(t))) continue;
+      cut_ = meeting->rival.t;
+      partner_ = meeting->rival;
+      error_ = meeting->error;
+    }
+  }
+
+  // From a bracket to the cut time. What crosses the ray before is shorter at the cut time and, if
+  // it crosses early, some time before.
+  void narrow() {
+    constexpr int kRounds = 40;
+    constexpr double kBefore = 1e-2;
+    for (int round = 0; round < kRounds && go_on(); ++round) {
+      if (!nearest_meeting(high_)) {
+        const double middle = 0.5 * (low_ + high_);
+        look_at(middle);
+        continue;
+      }
+      if (look_at((1 - kBefore) * *cut_) || look_at(*cut_)) continue;
+      return;
+    }
+    cut_.reset();
+    partner_.reset();
+    if (!stopped_) message_ = "what is shorter could not be followed back to the cut time";
+  }
+
+  // Whether something is shorter than the ray at time t; the bracket is narrowed.
+  bool look_at(double t) {
+    std::vector<Rival> rivals = search(t);
+    const bool shorter = has_shorter(rivals);
+    (shorter ? high_ : low_) = t;
+    if (shorter) rivals_ = std::move(rivals);
+    return shorter;
+  }
+
+  [[nodiscard]] std::string name_of_partner() const {
+    constexpr double kSame = 1e-6;  // relative, of momenta
+    constexpr double kEnds = 1e-9;  // of the ends, which are as good as the cut time is
+    const long steps = ray_.enough_steps(*cut_);
+    const BoundaryValueProblem problem = ray_.problem(*cut_, steps);
+    const Knots knots = knots_of(problem, ray_.p(), 1, steps);
+    std::vector<double> place = problem.to;
+    for (std::size_t j = 0; j < place.size(); ++j) place[j] += partner_->offset[j];
+    for (const ProblemSymmetry& symmetry : symmetries_onto(problem, place, kEnds)) {
+      const std::vector<double> image = partner(ray_.dynamics().info, symmetry, knots).p0();
+      double size = 0;
+      for (const double x : image) size = std::max(size, std::abs(x));
+      const int n = static_cast<int>(image.size());
+      if (!(largest_difference(image.data(), partner_->p.data(), n) <= kSame * size)) continue;
+      const bool mirrors = std::any_of(
+          symmetry.mirror.begin(), symmetry.mirror.end(), [](double d) { return d != 1; });
+      if (!mirrors) return "reversal";
+      return symmetry.reverses ? "mirror and reversal" : "mirror";
+    }
+    return "none";
+  }
+
+  Ray ray_;
+  const CutTimeOptions& options_;
+  Deadline deadline_;
+  double scale_;  // a natural length
+  double horizon_ = 0;
+  double low_ = 0;
+  double high_ = 0;
+  std::vector<Rival> rivals_;  // what the last search found
+  std::optional<double> conjugate_;
+  std::optional<double> cut_;
+  std::optional<Rival> partner_;
+  double error_ = 0;
+  std::string label_ = "none-found";
+  std::string message_;
+  int searches_ = 0;
+  bool stopped_ = false;
+  bool interrupted_ = false;
+};
+
+}  // namespace
+
+CutTime cut_time(const Dynamics& dynamics,
+                 const std::vector<double>& from,
+                 const std::vector<double>& p0,
+                 const CutTimeOptions& options) {
+  const auto began = std::chrono::steady_clock::now();
+  if (!(options.max_time >= 0 && std::isfinite(options.max_time))) {
+    throw std::invalid_argument("max_time must be finite and >= 0");
+  }
+  if (!(options.time_limit > 0)) throw std::invalid_argument("time_limit must be > 0");
+  const double speed = validated_speed(dynamics, from, p0);
+  std::vector<double> p = p0;
+  for (double& x : p) x /= speed;
+  CutSearch search(dynamics, from, std::move(p), speed, options);
+  search.run();
+  CutTime cut = search.result(speed);
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - began;
+  cut.elapsed_seconds = elapsed.count();
+  return cut;
+}
+
+}  // namespace carnot

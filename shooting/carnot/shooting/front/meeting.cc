@@ -1,0 +1,265 @@
+#include "carnot/shooting/front/meeting.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "carnot/shooting/linear/dense.h"
+#include "carnot/shooting/linear/round_off.h"
+#include "carnot/shooting/problem/units.h"
+
+namespace carnot::internal {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// The rival may be one of a family, which leave the end where it is: singular values below this,
+// relative, are those of the family. It is larger than kRankRoundOff, since near a solution they
+// vanish only as the square of what is missing.
+constexpr double kFamily = 1e-9;
+
+constexpr double kConverged = 1e-11;  // relative; Newton's method goes on as long as it gains
+
+// What the last equation asks for: by how much the rival is longer or, with a direction, how far
+// its momentum is from that of the ray along it.
+struct Demand {
+  double value = 0;
+  VectorXd direction{};
+};
+
+// The equations at a rival, linearised in the units of a short extremal.
+class MeetingEquations {
+ public:
+  // False where a flow fails.
+  bool evaluate(const Ray& ray, const Rival& rival, const Demand& demand, long steps) {
+    const Dynamics& dynamics = ray.dynamics();
+    const int n = dynamics.dof;
+    const Ray other(dynamics, ray.from(), rival.p);
+    const auto end = other.end(rival.t, steps);
+    const std::vector<double> own = ray.at(rival.t, steps);
+    if (!end || own.empty() || !(rival.t > 0)) return false;
+    const BoundaryValueProblem problem(dynamics, ray.from(), ray.from(), rival.t);
+    units_.emplace(problem, rival.p);
+    const Motion first = motion_at(dynamics, other.start().data());
+    const double speed = std::sqrt(2 * first.hamiltonian);
+    VectorXd gap(n);
+    double extent = 0;
+    for (int j = 0; j < n; ++j) {
+      gap[j] = end->z[j] - own[j] - rival.offset[j];
+      extent = std::max(extent, std::abs(end->z[j]));
+    }
+    const VectorXd drift =
+        motion_at(dynamics, end->z.data()).velocity - motion_at(dynamics, own.data()).velocity;
+    jacobian_.resize(n + 1, n + 1);
+    residual_.resize(n + 1);
+    jacobian_.topLeftCorner(n, n) = units_->tangent(end->tangent).topRows(n);
+    jacobian_.topRightCorner(n, 1) = units_->displacement(drift);
+    const MatrixXd per_unit = units_->momenta(MatrixXd::Identity(n, n));
+    residual_.head(n) = units_->displacement(gap);
+    if (demand.direction.size() == 0) {
+      jacobian_.bottomLeftCorner(1, n) = rival.t / speed * (first.velocity.transpose() * per_unit);
+      jacobian_(n, n) = speed - 1;
+      residual_[n] = rival.t * (speed - 1) - demand.value;
+    } else {
+      jacobian_.bottomLeftCorner(1, n) = demand.direction.transpose() * per_unit;
+      jacobian_(n, n) = 0;
+      residual_[n] = -demand.value;
+      for (int j = 0; j < n; ++j) {
+        residual_[n] += demand.direction[j] * (rival.p[j] - ray.p()[j]);
+      }
+    }
+    const double size = units_->scaled() ? 1 : std::max(extent, rival.t);
+    error_ =
+        std::max(residual_.head(n).cwiseAbs().maxCoeff() / size, std::abs(residual_[n]) / rival.t);
+    return std::isfinite(error_);
+  }
+  [[nodiscard]] double error() const { return error_; }
+
+  // Newton's step: p1 and t.
+  void step(Rival& rival) const {
+    const auto n = residual_.size() - 1;
+    const VectorXd step = least_squares(jacobian_, residual_, kFamily);
+    const VectorXd dp = units_->momenta(step.head(n));
+    for (Eigen::Index j = 0; j < n; ++j) rival.p[j] -= dp[j];
+    rival.t -= step[n];
+  }
+
+ private:
+  std::optional<Units> units_;
+  MatrixXd jacobian_;
+  VectorXd residual_;
+  double error_ = std::numeric_limits<double>::infinity();
+};
+
+// Newton's method. The rival is moved only where it converges.
+bool solve(const Ray& ray, const Demand& demand, long steps, Rival& rival) {
+  constexpr int kMaxIterations = 9;
+  constexpr double kSlower = 0.7;  // an error that falls by less is not falling
+  MeetingEquations equations;
+  Rival trial = rival;
+  Rival best = rival;
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kMaxIterations; ++i) {
+    if (!equations.evaluate(ray, trial, demand, steps)) break;
+    const double error = equations.error();
+    // The first step may go up: far along a curve it is the second one that converges.
+    if (i > 1 && !(error < kSlower * least)) break;
+    if (error < least) best = trial;
+    least = std::min(least, error);
+    equations.step(trial);
+  }
+  if (!(least <= kConverged)) return false;
+  rival = best;
+  return true;
+}
+
+double norm(const std::vector<double>& p) {
+  double sum = 0;
+  for (const double x : p) sum += x * x;
+  return std::sqrt(sum);
+}
+
+// Whether one step of the continuation stayed near.
+bool near(const Rival& a, const Rival& b) {
+  constexpr double kFar = 0.5;
+  std::vector<double> change = a.p;
+  for (std::size_t j = 0; j < change.size(); ++j) change[j] -= b.p[j];
+  return norm(change) <= kFar * std::max(norm(a.p), norm(b.p)) && std::abs(a.t - b.t) <= kFar * a.t;
+}
+
+}  // namespace
+
+double excess_of(const Ray& ray, const Rival& rival) {
+  return speed_of(ray.dynamics(), ray.from(), rival.p) - 1;
+}
+
+bool same_path(const Ray& ray, const Rival& rival, long steps) {
+  constexpr double kSame = 1e-6;
+  // Times without a symmetry: a path and its mirror image may cross half-way.
+  constexpr double kTimes[] = {0.13, 0.43, 0.81};
+  const int n = ray.dynamics().dof;
+  const Ray other(ray.dynamics(), ray.from(), rival.p);
+  double extent = 0;
+  double apart = 0;
+  for (const double part : kTimes) {
+    const std::vector<double> a = ray.at(part * rival.t, steps);
+    const std::vector<double> b = other.at(part * rival.t, steps);
+    if (a.empty() || b.empty()) return false;
+    for (int j = 0; j < n; ++j) {
+      extent = std::max(extent, std::abs(a[j] - ray.from()[j]));
+      apart = std::max(apart, std::abs(a[j] - b[j]));
+    }
+  }
+  return apart <= kSame * extent;
+}
+
+bool polish_meeting(const Ray& ray, long steps, Rival& rival) {
+  return solve(ray, {}, steps, rival);
+}
+
+namespace {
+
+// The branch that leaves the ray at a conjugate time, by how far it is from it along a direction.
+class Branch {
+ public:
+  Branch(const Ray& ray, const VectorXd& direction, double conjugate_time)
+      : ray_(ray),
+        direction_(direction),
+        rival_{ray.p(), std::vector<double>(ray.p().size(), 0.0), conjugate_time} {}
+
+  // Follows it to `value`, from where it is. Both p and t are nearly linear in that.
+  bool go_to(double value, long steps) {
+    Rival next = rival_;
+    for (std::size_t j = 0; j < next.p.size(); ++j) {
+      const double slope = value_ > 0 ? (rival_.p[j] - ray_.p()[j]) / value_ : direction_[j];
+      next.p[j] = ray_.p()[j] + value * slope;
+    }
+    if (!solve(ray_, {value, direction_}, steps, next)) return false;
+    rival_ = next;
+    value_ = value;
+    return true;
+  }
+  [[nodiscard]] const Rival& rival() const { return rival_; }
+  [[nodiscard]] double excess() const { return excess_of(ray_, rival_); }
+
+ private:
+  const Ray& ray_;
+  const VectorXd& direction_;
+  Rival rival_;
+  double value_ = 0;
+};
+
+// Between two values of the branch where the excess has different signs: where it is zero, by
+// secants. The equations of a meeting would be badly conditioned there.
+bool find_zero(double low, double at_low, double high, double at_high, long steps, Branch& branch) {
+  constexpr int kIterations = 40;
+  constexpr double kEnough = 1e-13;
+  for (int i = 0; i < kIterations && std::abs(high - low) > kEnough * high; ++i) {
+    const double value = high - at_high * (high - low) / (at_high - at_low);
+    if (!branch.go_to(value, steps)) return false;
+    const double excess = branch.excess();
+    const bool same_side = excess * at_high > 0;
+    // The end that stays counts half, or it would stay for ever (the Illinois method).
+    if (same_side) at_low *= 0.5;
+    if (!same_side) low = high;
+    if (!same_side) at_low = at_high;
+    if (value == high) break;
+    high = value;
+    at_high = excess;
+    if (excess == 0) break;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::optional<Meeting> meet_neighbour(const Ray& ray,
+                                      const VectorXd& direction,
+                                      double conjugate_time,
+                                      long steps) {
+  constexpr double kFirst = 1e-3;  // of |p|: what is nearer is conjugate to 1e-6 of the time
+  constexpr double kGrowth = 1.4;
+  constexpr double kFarthest = 1;
+  const double size = norm(ray.p());
+  Branch branch(ray, direction, conjugate_time);
+  double before = 0;
+  double excess_before = 0;
+  for (double part = kFirst; part < kFarthest; part *= kGrowth) {
+    const double value = part * size;
+    if (!branch.go_to(value, steps)) return std::nullopt;
+    const double excess = branch.excess();
+    if (before > 0 && excess * excess_before < 0) {
+      if (!find_zero(before, excess_before, value, excess, steps, branch)) return std::nullopt;
+      return Meeting{branch.rival(), 0};
+    }
+    before = value;
+    excess_before = excess;
+  }
+  return std::nullopt;
+}
+
+std::optional<Meeting> meet(const Ray& ray, Rival rival, long steps) {
+  constexpr int kMaxSteps = 60;
+  constexpr double kLeastPart = 1e-3;  // of what is left, in one step of the continuation
+  double part = 1;
+  bool arrived = false;
+  for (int i = 0; i < kMaxSteps && !arrived && part > kLeastPart; ++i) {
+    const double excess = rival.t * excess_of(ray, rival);
+    Rival next = rival;
+    if (solve(ray, {(1 - part) * excess}, steps, next) && near(rival, next)) {
+      arrived = part == 1;
+      rival = next;
+      part = std::min(1.0, 2 * part);
+    } else {
+      part *= 0.5;
+    }
+  }
+  if (!arrived || same_path(ray, rival, steps)) return std::nullopt;
+  Meeting meeting{rival, 0};
+  if (!polish_meeting(ray, 2 * steps, meeting.rival)) return std::nullopt;
+  meeting.error = std::abs(meeting.rival.t - rival.t);
+  return meeting;
+}
+
+}  // namespace carnot::internal

@@ -1,0 +1,55 @@
+// Where another extremal arrives at the same place in the same time.
+//
+// Of a ray gamma, a rival is an extremal p1 from the same point with
+//
+//   q(t; p1) = gamma(t) + w,     t (sqrt(2 H(p1)) - 1) = d,
+//
+// where w are whole periods of angles and d is by how much the rival is longer. These are n + 1
+// equations for p1 and t. Along their solutions d(d)/dt = p1(t).gamma'(t) - 1 in units of speed 1,
+// which is negative unless both arrive with one velocity: so t is a function of d as long as the
+// rival has no conjugate time there, and d is taken to zero by continuation. At d = 0 both meet,
+// and neither is the shortest any longer (a Maxwell point; Sachkov, ESAIM: COCV 16 (2010), sec. 3).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "carnot/shooting/front/ray.h"
+
+namespace carnot::internal {
+
+struct Rival {
+  std::vector<double> p;       // at the start; runs in the time t
+  std::vector<double> offset;  // w
+  double t = 0;
+};
+
+// By how much the rival is longer, relative to t.
+double excess_of(const Ray& ray, const Rival& rival);
+
+// Whether both are one path: nowhere further apart than 1e-6 of its extent. Angles by which the
+// rival has turned more do count.
+bool same_path(const Ray& ray, const Rival& rival, long steps);
+
+struct Meeting {
+  Rival rival;       // at speed 1
+  double error = 0;  // of t: what halving the step changes
+};
+
+// From a rival near the equations to one that solves them with d = 0. Nothing where the
+// continuation fails, or both become one path.
+std::optional<Meeting> meet(const Ray& ray, Rival rival, long steps);
+
+// A meeting shortly before a conjugate time. The rival is a neighbour then, which lies on the
+// branch of extremals that leaves the ray at the conjugate time along what the tangent flow does
+// not move, `direction` or its opposite. It is followed by how far it is along that, until it is
+// neither longer nor shorter.
+std::optional<Meeting> meet_neighbour(const Ray& ray,
+                                      const Eigen::VectorXd& direction,
+                                      double conjugate_time,
+                                      long steps);
+
+// Newton's method alone, for a rival that is near already; `steps` are enough.
+bool polish_meeting(const Ray& ray, long steps, Rival& rival);
+
+}  // namespace carnot::internal
