@@ -9,9 +9,10 @@ int main(int argc, char** argv) {
   using namespace carnot::apps;
   guard_streams();
   watch_for_interrupts();
-  constexpr std::array<AddSubcommand, 10> kSubcommands = {add_geodesic,
+  constexpr std::array<AddSubcommand, 11> kSubcommands = {add_geodesic,
                                                           add_atlas,
                                                           add_continue,
+                                                          add_front,
                                                           add_flow,
                                                           add_scenes,
                                                           add_methods,

@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
   }
   guard_streams();
   watch_for_interrupts();
-  constexpr std::array<AddSubcommand, 5> kSubcommands = {
-      add_geodesic, add_atlas, add_continue, add_flow, add_scenes};
+  constexpr std::array<AddSubcommand, 6> kSubcommands = {
+      add_geodesic, add_atlas, add_continue, add_front, add_flow, add_scenes};
   return run_program(arguments, kSubcommands);
 }

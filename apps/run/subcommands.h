@@ -18,6 +18,7 @@ struct Invocation {
 void add_geodesic(CLI::App& app, Invocation& invocation);
 void add_atlas(CLI::App& app, Invocation& invocation);
 void add_continue(CLI::App& app, Invocation& invocation);
+void add_front(CLI::App& app, Invocation& invocation);
 void add_flow(CLI::App& app, Invocation& invocation);
 void add_scenes(CLI::App& app, Invocation& invocation);
 void add_methods(CLI::App& app, Invocation& invocation);

@@ -1,0 +1,35 @@
+// What `carnot front` is asked: the options as texts, and the same checked.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "run/run_options.h"
+
+namespace carnot::apps {
+
+struct FrontCall {
+  RunOptions run;
+  std::string from;
+  std::string momentum;
+  std::string what;
+  std::string max_time;
+  std::string time_limit;
+  bool cover = false;
+  bool mod_angles = false;
+};
+
+struct FrontRequest {
+  Run run;
+  std::vector<double> from;
+  std::vector<double> momentum;
+  double max_time = 0;  // 0: chosen
+  double time_limit = std::numeric_limits<double>::infinity();
+  bool mod_angles = true;
+};
+
+// Throws std::invalid_argument.
+FrontRequest check(const FrontCall& options);
+
+}  // namespace carnot::apps

@@ -1,0 +1,136 @@
+// carnot front: the contract, refusals, and what does not change the answer.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "command.h"
+
+namespace carnot::apps::cli_front_test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+Words unicycle(const Words& more) {
+  return with({"front", "unicycle", "--from", "0,0,0", "--what", "cut"}, more);
+}
+
+TEST(FrontCommand, KeepsTheContract) {
+  const Outcome outcome = run(unicycle({"--momentum", "0.4,0.3,0.9", "--json"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = outcome.json();
+  EXPECT_THAT(keys(json),
+              ElementsAre("version",
+                          "arguments",
+                          "scene",
+                          "parameters",
+                          "from",
+                          "momentum",
+                          "method",
+                          "status",
+                          "message",
+                          "cut_time",
+                          "conjugate_time",
+                          "partner_p0",
+                          "label",
+                          "max_time",
+                          "searches",
+                          "elapsed_seconds"));
+  const double speed = std::hypot(0.4, 0.9);
+  const double rho = 0.5 / speed;
+  EXPECT_NEAR(json["cut_time"].get<double>(), 2 * std::comp_ellint_1(rho) / speed, 1e-11);
+  EXPECT_TRUE(json["conjugate_time"].is_null());
+  EXPECT_NEAR(json["partner_p0"][2].get<double>(), -0.9, 1e-10);
+  EXPECT_EQ(json["label"], "reversal");
+  EXPECT_EQ(json["status"], "converged");
+}
+
+TEST(FrontCommand, HasNullsWhereThereIsNone) {
+  const Outcome none = run(unicycle({"--momentum", "0.4,0.3,0.9", "--max-time", "1", "--json"}));
+  ASSERT_EQ(none.status, 0) << none.err;
+  EXPECT_TRUE(none.json()["cut_time"].is_null());
+  EXPECT_TRUE(none.json()["partner_p0"].is_null());
+  EXPECT_EQ(none.json()["label"], "none-found");
+  const Outcome family = run({"front",
+                              "heisenberg-group",
+                              "--from",
+                              "0,0,0",
+                              "--momentum",
+                              "1,0,2",
+                              "--what",
+                              "cut",
+                              "--json"});
+  EXPECT_TRUE(family.json()["partner_p0"].is_null());
+  EXPECT_EQ(family.json()["label"], "conjugate");
+  EXPECT_NEAR(family.json()["cut_time"].get<double>(), std::numbers::pi, 1e-12);
+}
+
+TEST(FrontCommand, TakesParametersTextsAndAnyNumberOfThreads) {
+  // Lengths in another unit: beta x, beta^2 p.
+  const auto one = run(unicycle({"--momentum", "0.4,0.3,0.9", "--json"})).json();
+  const auto two =
+      run(unicycle({"--momentum", "0.2,0.15,0.9", "--set", "beta=2", "--threads", "1", "--json"}))
+          .json();
+  EXPECT_NEAR(two["cut_time"].get<double>(), 4 * one["cut_time"].get<double>(), 1e-10);
+  const auto again =
+      run(unicycle({"--momentum", "0.4,0.3,0.9", "--threads", "1", "--json"})).json();
+  EXPECT_EQ(again["cut_time"], one["cut_time"]);
+  EXPECT_EQ(again["partner_p0"], one["partner_p0"]);
+  const Sandbox sandbox;
+  const Outcome text = sandbox.run({"scenes", "unicycle", "--text"});
+  std::ofstream(sandbox.directory() / "wheel.scene") << text.out;
+  const Outcome by_text = sandbox.run({"front",
+                                       "wheel.scene",
+                                       "--from",
+                                       "0,0,0",
+                                       "--momentum",
+                                       "0.4,0.3,0.9",
+                                       "--what",
+                                       "cut",
+                                       "--json"});
+  ASSERT_EQ(by_text.status, 0) << by_text.err;
+  EXPECT_NEAR(by_text.json()["cut_time"].get<double>(), one["cut_time"].get<double>(), 1e-11);
+}
+
+TEST(FrontCommand, SaysThatTimeWasUp) {
+  const Outcome late =
+      run(unicycle({"--momentum", "0.4,0.3,0.9", "--time-limit", "1e-9", "--json"}));
+  EXPECT_EQ(late.status, 1);
+  EXPECT_EQ(late.json()["status"], "not_converged");
+  EXPECT_TRUE(late.json()["cut_time"].is_null());
+  EXPECT_THAT(late.err, HasSubstr("time limit"));
+}
+
+TEST(FrontCommand, RefusesInOneLine) {
+  const std::vector<std::pair<Words, std::string>> cases{
+      {{"front"}, "SCENE"},
+      {{"front", "unicycle", "--from", "0,0,0", "--momentum", "1,0,0"}, "--what"},
+      {{"front", "unicycle", "--from", "0,0,0", "--what", "edge"}, "'edge'"},
+      {{"front", "unicycle", "--momentum", "1,0,0", "--what", "cut"}, "--from"},
+      {{"front", "unicycle", "--from", "0,0,0", "--what", "cut"}, "--momentum"},
+      {unicycle({"--momentum", "1,0"}), "'1,0'"},
+      {unicycle({"--momentum", "0,1,0"}), "velocity is zero"},
+      {unicycle({"--momentum", "1,0,0", "--max-time", "0"}), "--max-time"},
+      {unicycle({"--momentum", "1,0,0", "--time-limit", "-1"}), "--time-limit"},
+      {unicycle({"--momentum", "1,0,0", "--cover", "--mod-angles"}), "--mod-angles"},
+      {{"front", "vehicle-cosine", "--from", "0,1,0,0", "--momentum", "1,0,0,0", "--what", "cut"},
+       "without a potential"},
+      {{"front",
+        "satellite-quaternion",
+        "--from",
+        "1,1,0,0",
+        "--momentum",
+        "0,1,0,0",
+        "--what",
+        "cut"},
+       "--from"}};
+  for (const auto& [line, expected] : cases) {
+    const Sandbox sandbox;
+    expect_refused(line, HasSubstr(expected), sandbox);
+  }
+}
+
+}  // namespace
+}  // namespace carnot::apps::cli_front_test
