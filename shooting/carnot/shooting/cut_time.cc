@@ -9,10 +9,9 @@
 #include "carnot/shooting/extremal/conjugate_times.h"
 #include "carnot/shooting/extremal/symmetry.h"
 #include "carnot/shooting/find_geodesics.h"
-#include "carnot/shooting/front/meeting.h"
-#include "carnot/shooting/front/ray.h"
-#include "carnot/shooting/linear/dense.h"
 #include "carnot/shooting/problem/scales.h"
+#include "carnot/shooting/rays/meeting.h"
+#include "carnot/shooting/rays/ray.h"
 #include "carnot/shooting/search/deadline.h"
 #include "carnot/shooting/shoot/end_point.h"
 
@@ -46,7 +45,7 @@ class CutSearch {
     if (bracket()) {
       narrow();
     } else if (!stopped_ && conjugate_) {
-      meet_neighbours();
+      take_neighbour();
       if (!cut_) label_ = "conjugate";
       if (!cut_) cut_ = conjugate_;
     }
@@ -197,26 +196,13 @@ class CutSearch {
     return better;
   }
 
-  // Near the edge of the cut locus the partner is a neighbour, and meets the ray so shortly before
-  // the conjugate time that no search tells.
-  void meet_neighbours() {
-    constexpr double kSameTime = 1e-10;
-    constexpr double kEarliest = 0.9;  // of the conjugate time
-    const double t = *conjugate_;
-    // What neighbours share magnifies the errors of the flow.
-    const long steps = 2 * ray_.enough_steps(t);
-    const auto end = ray_.end(t, steps);
-    if (!end) return;
-    const auto n = static_cast<Eigen::Index>(ray_.p().size());
-    const Eigen::VectorXd still = right_singular(end->tangent.topRows(n)).vectors.col(n - 1);
-    for (const double side : {1.0, -1.0}) {
-      const auto meeting = meet_neighbour(ray_, side * still, t, steps);
-      if (!meeting || meeting->rival.t < kEarliest * t) continue;
-      if (!(meeting->rival.t < (1 - kSameTime) * cut_.value_or(t))) continue;
-      cut_ = meeting->rival.t;
-      partner_ = meeting->rival;
-      error_ = meeting->error;
-    }
+  // Where nothing is shorter before the conjugate time, a neighbour may be as long.
+  void take_neighbour() {
+    const auto meeting = meet_neighbours(ray_, *conjugate_);
+    if (!meeting) return;
+    cut_ = meeting->rival.t;
+    partner_ = meeting->rival;
+    error_ = meeting->error;
   }
 
   // From a bracket to the cut time. What crosses the ray before is shorter at the cut time and, if

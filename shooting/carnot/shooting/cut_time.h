@@ -8,7 +8,7 @@
 //
 // Once it is not the shortest it never is again: so a search tells on which side of the cut time a
 // time is. What is shorter there is followed back to where both are equally long, by continuation
-// and Newton's method (front/meeting.h), and a search just before tells whether anything was
+// and Newton's method (rays/meeting.h), and a search just before tells whether anything was
 // missed.
 //
 //   const CutTime cut = cut_time(make_dynamics(scenes::Unicycle{}), {0, 0, 0}, {0.5, 0.4, 0.8});

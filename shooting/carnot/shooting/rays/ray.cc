@@ -1,4 +1,4 @@
-#include "carnot/shooting/front/ray.h"
+#include "carnot/shooting/rays/ray.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,6 +25,13 @@ bool is_quadratic(const Dynamics& dynamics,
   const double one = energy(1);
   return energy(0) == 0 && std::abs(energy(2) - 4 * one) <= kRounding * std::abs(one) &&
          std::abs(energy(-1) - one) <= kRounding * std::abs(one);
+}
+
+// But for the round-off of a flow. Momenta may be much larger than coordinates.
+bool same_numbers(const double* a, const double* b, int count) {
+  double scale = 0;
+  for (int j = 0; j < count; ++j) scale = std::max(scale, std::abs(b[j]));
+  return largest_difference(a, b, count) <= kFlowRoundOff * scale;
 }
 
 void check(bool ok, const char* what) {
@@ -98,13 +105,10 @@ long Ray::enough_steps(double t) const {
   std::vector<double> coarse = at(t, kFewest);
   for (long steps = kFewest; steps < kMost; steps *= 2) {
     std::vector<double> fine = at(t, 2 * steps);
-    if (!coarse.empty() && !fine.empty()) {
-      double scale = 0;
-      for (const double x : fine) scale = std::max(scale, std::abs(x));
-      const int size = static_cast<int>(fine.size());
-      if (largest_difference(coarse.data(), fine.data(), size) <= kFlowRoundOff * scale) {
-        return steps;
-      }
+    const bool both = !coarse.empty() && !fine.empty();
+    if (both && same_numbers(coarse.data(), fine.data(), dynamics_->dof) &&
+        same_numbers(&coarse[dynamics_->dof], &fine[dynamics_->dof], dynamics_->dof)) {
+      return steps;
     }
     coarse = std::move(fine);
   }

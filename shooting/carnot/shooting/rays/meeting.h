@@ -14,7 +14,7 @@
 #include <optional>
 #include <vector>
 
-#include "carnot/shooting/front/ray.h"
+#include "carnot/shooting/rays/ray.h"
 
 namespace carnot::internal {
 
@@ -40,14 +40,12 @@ struct Meeting {
 // continuation fails, or both become one path.
 std::optional<Meeting> meet(const Ray& ray, Rival rival, long steps);
 
-// A meeting shortly before a conjugate time. The rival is a neighbour then, which lies on the
-// branch of extremals that leaves the ray at the conjugate time along what the tangent flow does
-// not move, `direction` or its opposite. It is followed by how far it is along that, until it is
-// neither longer nor shorter.
-std::optional<Meeting> meet_neighbour(const Ray& ray,
-                                      const Eigen::VectorXd& direction,
-                                      double conjugate_time,
-                                      long steps);
+// The first meeting shortly before a conjugate time. Near the edge of the cut locus the partner is
+// a neighbour, and meets the ray so shortly before that no search tells. It lies on the branch of
+// extremals that leaves the ray at the conjugate time along what the tangent flow does not move
+// there. The branch is followed to both sides, by how far it is along that, until it is neither
+// longer nor shorter.
+std::optional<Meeting> meet_neighbours(const Ray& ray, double conjugate_time);
 
 // Newton's method alone, for a rival that is near already; `steps` are enough.
 bool polish_meeting(const Ray& ray, long steps, Rival& rival);

@@ -1,4 +1,4 @@
-#include "carnot/shooting/front/meeting.h"
+#include "carnot/shooting/rays/meeting.h"
 
 #include <algorithm>
 #include <cmath>
@@ -212,8 +212,7 @@ bool find_zero(double low, double at_low, double high, double at_high, long step
   return true;
 }
 
-}  // namespace
-
+// On one side.
 std::optional<Meeting> meet_neighbour(const Ray& ray,
                                       const VectorXd& direction,
                                       double conjugate_time,
@@ -237,6 +236,30 @@ std::optional<Meeting> meet_neighbour(const Ray& ray,
     excess_before = excess;
   }
   return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Meeting> meet_neighbours(const Ray& ray, double conjugate_time) {
+  constexpr double kSameTime = 1e-10;
+  constexpr double kEarliest = 0.9;  // of the conjugate time
+  // What neighbours share magnifies the errors of the flow.
+  const long steps = 2 * ray.enough_steps(conjugate_time);
+  const auto end = ray.end(conjugate_time, steps);
+  if (!end) return std::nullopt;
+  const auto n = static_cast<Eigen::Index>(ray.p().size());
+  const VectorXd still = right_singular(end->tangent.topRows(n)).vectors.col(n - 1);
+  std::optional<Meeting> first;
+  double latest = (1 - kSameTime) * conjugate_time;
+  for (const double side : {1.0, -1.0}) {
+    const VectorXd direction = side * still;
+    auto meeting = meet_neighbour(ray, direction, conjugate_time, steps);
+    if (!meeting || meeting->rival.t < kEarliest * conjugate_time) continue;
+    if (!(meeting->rival.t < latest)) continue;
+    latest = meeting->rival.t;
+    first = std::move(meeting);
+  }
+  return first;
 }
 
 std::optional<Meeting> meet(const Ray& ray, Rival rival, long steps) {

@@ -1,0 +1,86 @@
+// Cut times of many rays, from neighbour to neighbour.
+//
+// A few searches (cut_time.h) tell the cut time and the partner of some rays. A neighbour has a
+// partner nearby, to which Newton's method leads in three or four steps, some hundred times as
+// fast. What no neighbour leads to is searched, and where a neighbour promises a partner that is
+// met earlier it is taken. All goes in rounds that only read what the round before has left, so the
+// result does not depend on the number of threads.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "carnot/dynamics.h"
+#include "carnot/shooting/rays/meeting.h"
+
+namespace carnot::internal {
+
+struct CutValue {
+  bool known = false;
+  double t = 0;          // infinite where there is none up to the horizon
+  double conjugate = 0;  // the first conjugate time; infinite where there is none
+  bool at_conjugate = false;
+  Rival partner;  // where the cut is no conjugate time
+};
+
+struct CutValuesOptions {
+  double horizon = 0;  // for searches and conjugate times
+  bool mod_angles = true;
+  std::uint64_t seed = 0;
+  int threads = 0;
+  Progress progress;  // returns false to stop
+};
+
+class CutValues {
+ public:
+  CutValues(const Dynamics& dynamics, std::vector<double> from, CutValuesOptions options)
+      : dynamics_(dynamics), from_(std::move(from)), options_(std::move(options)) {}
+
+  [[nodiscard]] const CutValue& operator[](int i) const { return values_[i]; }
+  [[nodiscard]] CutValue& operator[](int i) { return values_[i]; }
+  [[nodiscard]] long searches() const { return searches_; }
+  [[nodiscard]] bool stopped() const { return stopped_; }
+
+  // Adds rays with these momenta, whose neighbours are given (also among each other), and finds
+  // their cut times. False when stopped.
+  bool add(const std::vector<std::vector<double>>& momenta,
+           const std::vector<std::vector<int>>& neighbours);
+  // Adds rays one of whose two neighbours, known ones, leads to each.
+  bool add_between(const std::vector<std::vector<double>>& momenta,
+                   const std::vector<std::pair<int, int>>& parents);
+  // Adds the partners of these rays, which are met at the same times.
+  void add_partners(const std::vector<int>& of);
+  // The value of a ray beside number i; nothing is added.
+  [[nodiscard]] CutValue beside(const std::vector<double>& p, int i);
+  // Searches so many rays once more, spread evenly, and takes what is less. How many were.
+  int check(int count, const std::vector<std::vector<int>>& neighbours);
+  // Leaves out all but these.
+  void keep(const std::vector<int>& kept);
+
+ private:
+  [[nodiscard]] Ray ray(int i) const { return {dynamics_, from_, momenta_[i]}; }
+  [[nodiscard]] CutValue searched(const std::vector<double>& p);
+  [[nodiscard]] CutValue from_neighbours(const std::vector<double>& p,
+                                         double conjugate,
+                                         const std::vector<int>& neighbours);
+  bool follow(const std::vector<double>& p,
+              const std::vector<double>& to,
+              int halvings,
+              Rival& rival) const;
+  bool meets(const Ray& ray, int j, int halvings, CutValue& value) const;
+  bool spread(const std::vector<std::vector<int>>& neighbours);
+  bool relax(const std::vector<std::vector<int>>& neighbours);
+  bool improve(int i, const std::vector<int>& neighbours, CutValue& value) const;
+  bool go_on();
+
+  Dynamics dynamics_;
+  std::vector<double> from_;
+  CutValuesOptions options_;
+  std::vector<std::vector<double>> momenta_;
+  std::vector<CutValue> values_;
+  std::atomic<long> searches_{0};
+  std::atomic<bool> stopped_{false};
+};
+
+}  // namespace carnot::internal

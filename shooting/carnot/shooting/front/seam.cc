@@ -1,0 +1,192 @@
+#include "carnot/shooting/front/seam.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <set>
+
+namespace carnot::internal {
+namespace {
+
+using Place = std::pair<double, double>;
+
+// How often each edge is in a triangle.
+std::map<Edge, int> edges_of(const Surface& surface) {
+  std::map<Edge, int> edges;
+  for (const auto& t : surface.triangles) {
+    for (int k = 0; k < 3; ++k) ++edges[edge_of(t[k], t[(k + 1) % 3])];
+  }
+  return edges;
+}
+
+// b - a with phi the short way round, w in units of `height`.
+Place difference(const Place& a, const Place& b, double height) {
+  return {std::remainder(b.first - a.first, 2 * std::numbers::pi), (b.second - a.second) / height};
+}
+
+double length_of(const Place& a) { return std::hypot(a.first, a.second); }
+
+// A place on an edge of the border.
+struct Foot {
+  Edge edge;
+  double part = 0;
+  double distance = std::numeric_limits<double>::infinity();
+};
+
+class Border {
+ public:
+  explicit Border(const Surface& surface) : surface_(surface) {
+    for (const auto& [edge, count] : edges_of(surface)) {
+      if (count == 1) edges_.push_back(edge);
+    }
+    for (const SurfaceVertex& v : surface.vertices) height_ = std::max(height_, std::abs(v.w));
+  }
+
+  [[nodiscard]] Place place(int i) const {
+    return {surface_.vertices[i].phi, surface_.vertices[i].w};
+  }
+  [[nodiscard]] double height() const { return height_; }
+  [[nodiscard]] Foot foot(const Place& of) const {
+    Foot nearest;
+    for (const Edge& edge : edges_) {
+      const Place along = difference(place(edge.first), place(edge.second), height_);
+      const Place to = difference(place(edge.first), of, height_);
+      const double square = along.first * along.first + along.second * along.second;
+      double part = square > 0 ? (along.first * to.first + along.second * to.second) / square : 0;
+      part = std::clamp(part, 0.0, 1.0);
+      const double distance =
+          length_of({to.first - part * along.first, to.second - part * along.second});
+      if (distance < nearest.distance) nearest = {edge, part, distance};
+    }
+    return nearest;
+  }
+
+ private:
+  const Surface& surface_;
+  std::vector<Edge> edges_;
+  double height_ = 1e-300;
+};
+
+// A fan in the place of each triangle with new vertices on a border edge.
+void split(const std::map<Edge, std::map<double, int>>& on_edge, Surface& surface) {
+  std::vector<std::array<int, 3>> triangles;
+  std::vector<std::array<int, 3>> work(surface.triangles.rbegin(), surface.triangles.rend());
+  while (!work.empty()) {
+    const auto t = work.back();
+    work.pop_back();
+    bool whole = true;
+    for (int k = 0; k < 3 && whole; ++k) {
+      const int a = t[k];
+      const int b = t[(k + 1) % 3];
+      const int c = t[(k + 2) % 3];
+      const auto found = on_edge.find(edge_of(a, b));
+      if (found == on_edge.end()) continue;
+      whole = false;
+      std::vector<int> chain;
+      for (const auto& [part, vertex] : found->second) chain.push_back(vertex);
+      if (a > b) std::reverse(chain.begin(), chain.end());  // parts begin at the lesser one
+      chain.push_back(b);
+      int last = a;
+      for (const int next : chain) {
+        work.push_back({last, next, c});  // may have another border edge
+        last = next;
+      }
+    }
+    if (whole) triangles.push_back(t);
+  }
+  surface.triangles = std::move(triangles);
+}
+
+int root_of(std::vector<int>& classes, int i) {
+  while (classes[i] != i) i = classes[i] = classes[classes[i]];
+  return i;
+}
+
+void unite(std::vector<int>& classes, int a, int b) {
+  const int x = root_of(classes, a);
+  const int y = root_of(classes, b);
+  classes[std::max(x, y)] = std::min(x, y);
+}
+
+}  // namespace
+
+std::vector<int> sew(const std::vector<BorderVertex>& border,
+                     const std::function<void(int first, const std::vector<int>& of)>& make,
+                     Surface& surface) {
+  constexpr double kSameVertex = 1e-6;  // radians, and w in units of its bound
+  const Border sides(surface);
+  const int first = static_cast<int>(surface.vertices.size());
+  std::map<Edge, std::map<double, int>> on_edge;
+  std::vector<std::pair<int, int>> pairs;
+  std::vector<int> of;
+  std::vector<SurfaceVertex> added;
+  for (const BorderVertex& one : border) {
+    if (one.at_conjugate) continue;
+    const Foot foot = sides.foot(one.partner);
+    int same = -1;
+    for (const int end : {foot.edge.first, foot.edge.second}) {
+      if (length_of(difference(sides.place(end), one.partner, sides.height())) < kSameVertex)
+        same = end;
+    }
+    if (same >= 0) {
+      pairs.emplace_back(one.vertex, same);
+      continue;
+    }
+    // Two partners may be as good as one place; then they follow each other.
+    auto& chain = on_edge[foot.edge];
+    double part = foot.part;
+    while (chain.contains(part)) part = std::nextafter(part, 1.0);
+    const int vertex = first + static_cast<int>(added.size());
+    chain[part] = vertex;
+    added.push_back({one.partner.first, one.partner.second, {}});
+    of.push_back(one.vertex);
+    pairs.emplace_back(one.vertex, vertex);
+  }
+  surface.vertices.insert(surface.vertices.end(), added.begin(), added.end());
+  split(on_edge, surface);
+  make(first, of);
+  std::vector<int> classes(surface.vertices.size());
+  for (std::size_t i = 0; i < classes.size(); ++i) classes[i] = static_cast<int>(i);
+  for (const auto& [a, b] : pairs) unite(classes, a, b);
+  // A family of conjugate momenta arrives at one point.
+  const std::map<Edge, int> edges = edges_of(surface);
+  std::set<int> conjugate;
+  for (const BorderVertex& one : border) {
+    if (one.at_conjugate) conjugate.insert(one.vertex);
+  }
+  for (const auto& [edge, count] : edges) {
+    if (count == 1 && conjugate.contains(edge.first) && conjugate.contains(edge.second)) {
+      unite(classes, edge.first, edge.second);
+    }
+  }
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    classes[i] = root_of(classes, static_cast<int>(i));
+  }
+  return classes;
+}
+
+void merge(const std::vector<int>& classes, Surface& surface) {
+  std::vector<std::array<int, 3>> kept;
+  for (auto t : surface.triangles) {
+    for (int& i : t) i = classes[i];
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) kept.push_back(t);
+  }
+  surface.triangles = std::move(kept);
+}
+
+Topology topology_of(const Surface& surface) {
+  Topology topology;
+  const std::map<Edge, int> edges = edges_of(surface);
+  std::set<int> vertices;
+  for (const auto& t : surface.triangles) vertices.insert(t.begin(), t.end());
+  topology.closed = !edges.empty() && std::all_of(edges.begin(), edges.end(), [](const auto& edge) {
+    return edge.second == 2;
+  });
+  topology.euler = static_cast<int>(vertices.size()) - static_cast<int>(edges.size()) +
+                   static_cast<int>(surface.triangles.size());
+  return topology;
+}
+
+}  // namespace carnot::internal

@@ -1,0 +1,243 @@
+#include "carnot/shooting/front/surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+#include <utility>
+
+namespace carnot::internal {
+namespace {
+
+using Point = std::vector<double>;
+
+double distance(const Point& a, const Point& b) {
+  double sum = 0;
+  for (std::size_t j = 0; j < a.size(); ++j) sum += (a[j] - b[j]) * (a[j] - b[j]);
+  return std::sqrt(sum);
+}
+
+// The angle at the edge between two triangles of images, 0 where they lie in one plane: of the
+// parts of c - a and d - a across the edge.
+double bend(const Point& a, const Point& b, const Point& c, const Point& d) {
+  const std::size_t n = a.size();
+  double along = 0;
+  double on_c = 0;
+  double on_d = 0;
+  for (std::size_t j = 0; j < n; ++j) {
+    along += (b[j] - a[j]) * (b[j] - a[j]);
+    on_c += (c[j] - a[j]) * (b[j] - a[j]);
+    on_d += (d[j] - a[j]) * (b[j] - a[j]);
+  }
+  if (!(along > 0)) return 0;
+  double cc = 0;
+  double dd = 0;
+  double cd = 0;
+  for (std::size_t j = 0; j < n; ++j) {
+    const double x = c[j] - a[j] - on_c / along * (b[j] - a[j]);
+    const double y = d[j] - a[j] - on_d / along * (b[j] - a[j]);
+    cc += x * x;
+    dd += y * y;
+    cd += x * y;
+  }
+  if (!(cc > 0 && dd > 0)) return 0;
+  return std::numbers::pi - std::acos(std::clamp(cd / std::sqrt(cc * dd), -1.0, 1.0));
+}
+
+// The edges that ask to be cut.
+std::set<Edge> edges_to_cut(const Refinement& how, const Surface& surface) {
+  std::map<Edge, int> opposite;  // of the first triangle that has the edge
+  std::set<Edge> cut;
+  const auto image = [&](int i) -> const Point& { return surface.vertices[i].image; };
+  for (const auto& triangle : surface.triangles) {
+    for (int k = 0; k < 3; ++k) {
+      const int a = triangle[k];
+      const int b = triangle[(k + 1) % 3];
+      const int c = triangle[(k + 2) % 3];
+      const Edge edge = edge_of(a, b);
+      const double length = distance(image(a), image(b));
+      if (length > how.longest) cut.insert(edge);
+      const auto [other, is_new] = opposite.emplace(edge, c);
+      if (is_new || !(length > how.shortest)) continue;
+      if (bend(image(a), image(b), image(c), image(other->second)) > how.sharpest) cut.insert(edge);
+    }
+  }
+  // A triangle that is cut is cut on its longest side, too: or it would become a sliver.
+  std::set<Edge> longest;
+  for (const auto& triangle : surface.triangles) {
+    std::array<double, 3> length{};
+    bool any = false;
+    for (int k = 0; k < 3; ++k) {
+      length[k] = distance(image(triangle[k]), image(triangle[(k + 1) % 3]));
+      any = any || cut.contains(edge_of(triangle[k], triangle[(k + 1) % 3]));
+    }
+    const auto k = std::max_element(length.begin(), length.end()) - length.begin();
+    if (any && length[k] > how.shortest) {
+      longest.insert(edge_of(triangle[k], triangle[(k + 1) % 3]));
+    }
+  }
+  cut.merge(longest);
+  return cut;
+}
+
+// The triangle with middles on some of its sides, side k between corners k and k + 1; -1: none.
+void divide(const std::array<int, 3>& t,
+            const std::array<int, 3>& middle,
+            std::vector<std::array<int, 3>>& out) {
+  const auto count = std::count_if(middle.begin(), middle.end(), [](int m) { return m >= 0; });
+  if (count == 0) {
+    out.push_back(t);
+  } else if (count == 3) {
+    out.push_back({t[0], middle[0], middle[2]});
+    out.push_back({middle[0], t[1], middle[1]});
+    out.push_back({middle[2], middle[1], t[2]});
+    out.push_back(middle);
+  } else {
+    // Turned so that side 0 has a middle and, of two, side 1 has the other.
+    int k = 0;
+    while (middle[k] < 0 || (count == 2 && middle[(k + 1) % 3] < 0)) ++k;
+    const int a = t[k];
+    const int b = t[(k + 1) % 3];
+    const int c = t[(k + 2) % 3];
+    const int m = middle[k];
+    const int next = middle[(k + 1) % 3];
+    if (count == 1) {
+      out.push_back({a, m, c});
+      out.push_back({m, b, c});
+    } else {
+      out.push_back({m, b, next});
+      out.push_back({a, m, next});
+      out.push_back({a, next, c});
+    }
+  }
+}
+
+// One round. False when stopped.
+bool cut_edges(const std::set<Edge>& cut, const Refinement& how, Surface& surface) {
+  std::map<Edge, int> middle;
+  std::vector<Between> parents;
+  const int first = static_cast<int>(surface.vertices.size());
+  for (const Edge& edge : cut) {
+    middle[edge] = static_cast<int>(surface.vertices.size());
+    parents.push_back({edge.first, edge.second, 0.5});
+    surface.vertices.push_back(surface.between(parents.back()));
+  }
+  std::vector<std::array<int, 3>> triangles;
+  for (const auto& t : surface.triangles) {
+    std::array<int, 3> middles{-1, -1, -1};
+    for (int k = 0; k < 3; ++k) {
+      const auto found = middle.find(edge_of(t[k], t[(k + 1) % 3]));
+      if (found != middle.end()) middles[k] = found->second;
+    }
+    divide(t, middles, triangles);
+  }
+  surface.triangles = std::move(triangles);
+  return how.make(first, parents);
+}
+
+}  // namespace
+
+SurfaceVertex Surface::between(const Between& place) const {
+  const SurfaceVertex& a = vertices[place.a];
+  const SurfaceVertex& b = vertices[place.b];
+  SurfaceVertex vertex;
+  vertex.phi = a.phi + place.part * std::remainder(b.phi - a.phi, 2 * std::numbers::pi);
+  vertex.w = a.w + place.part * (b.w - a.w);
+  return vertex;
+}
+
+Surface cylinder_grid(int around, int along, double bound) {
+  Surface surface;
+  for (int i = 0; i < along; ++i) {
+    for (int j = 0; j < around; ++j) {
+      const double phi = 2 * std::numbers::pi * j / around;
+      const double w = bound * (2.0 * i / (along - 1) - 1);
+      surface.vertices.push_back({phi, w, {}});
+    }
+  }
+  for (int i = 0; i + 1 < along; ++i) {
+    for (int j = 0; j < around; ++j) {
+      const int a = i * around + j;
+      const int b = i * around + (j + 1) % around;
+      surface.triangles.push_back({a, b, b + around});
+      surface.triangles.push_back({a, b + around, a + around});
+    }
+  }
+  return surface;
+}
+
+long refine(const Refinement& how, Surface& surface) {
+  constexpr int kMostRounds = 24;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const std::set<Edge> cut = edges_to_cut(how, surface);
+    if (cut.empty()) return 0;
+    if (static_cast<long>(surface.vertices.size() + cut.size()) > how.most) {
+      return static_cast<long>(cut.size());
+    }
+    if (!cut_edges(cut, how, surface)) return -1;
+  }
+  return static_cast<long>(edges_to_cut(how, surface).size());
+}
+
+void clip(const std::vector<bool>& inside,
+          const std::function<void(std::vector<Between>&)>& locate,
+          const std::function<bool(int, const std::vector<Between>&)>& make,
+          Surface& surface) {
+  std::map<Edge, int> border;
+  std::vector<Between> places;
+  const int first = static_cast<int>(surface.vertices.size());
+  for (const auto& t : surface.triangles) {
+    for (int k = 0; k < 3; ++k) {
+      const int a = t[k];
+      const int b = t[(k + 1) % 3];
+      if (inside[a] == inside[b] || border.contains(edge_of(a, b))) continue;
+      border[edge_of(a, b)] = first + static_cast<int>(places.size());
+      places.push_back({inside[a] ? a : b, inside[a] ? b : a, 0.5});
+    }
+  }
+  locate(places);
+  for (const Between& place : places) surface.vertices.push_back(surface.between(place));
+  std::vector<std::array<int, 3>> kept;
+  for (const auto& t : surface.triangles) {
+    const int count = inside[t[0]] + inside[t[1]] + inside[t[2]];
+    if (count == 3) kept.push_back(t);
+    if (count == 0 || count == 3) continue;
+    int k = 0;  // the corner that is alone
+    while ((count == 1) != inside[t[k]]) ++k;
+    const int a = t[k];
+    const int b = t[(k + 1) % 3];
+    const int c = t[(k + 2) % 3];
+    const int ab = border.at(edge_of(a, b));
+    const int ac = border.at(edge_of(a, c));
+    if (count == 1) {
+      kept.push_back({a, ab, ac});
+    } else {
+      kept.push_back({ab, b, c});
+      kept.push_back({ab, c, ac});
+    }
+  }
+  surface.triangles = std::move(kept);
+  (void)make(first, places);
+}
+
+void drop_unused(Surface& surface, std::vector<int>& kept) {
+  std::vector<int> number(surface.vertices.size(), -1);
+  for (const auto& t : surface.triangles) {
+    for (const int i : t) number[i] = 0;
+  }
+  kept.clear();
+  std::vector<SurfaceVertex> vertices;
+  for (std::size_t i = 0; i < number.size(); ++i) {
+    if (number[i] < 0) continue;
+    number[i] = static_cast<int>(vertices.size());
+    vertices.push_back(std::move(surface.vertices[i]));
+    kept.push_back(static_cast<int>(i));
+  }
+  for (auto& t : surface.triangles) {
+    for (int& i : t) i = number[i];
+  }
+  surface.vertices = std::move(vertices);
+}
+
+}  // namespace carnot::internal

@@ -1,0 +1,68 @@
+// A triangulated piece of the cylinder of momenta, and where it goes.
+//
+// Every vertex is a momentum (phi, w) with an image in space. Edges whose images are too long, or
+// at which the image is bent too sharply, get a vertex in their middle, and a triangle is cut in
+// two, three or four by its edges that have one. So the mesh stays conforming, and since everything
+// follows from the mesh before, it is the same for any number of threads.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace carnot::internal {
+
+struct SurfaceVertex {
+  double phi = 0;  // not reduced to a turn
+  double w = 0;
+  std::vector<double> image;  // a place; NaN where there is none
+};
+
+// Parents of a new vertex, and its place between them.
+struct Between {
+  int a = 0;
+  int b = 0;
+  double part = 0.5;
+};
+
+// Two vertices, the lesser number first.
+using Edge = std::pair<int, int>;
+inline Edge edge_of(int a, int b) { return a < b ? Edge{a, b} : Edge{b, a}; }
+
+struct Surface {
+  std::vector<SurfaceVertex> vertices;
+  std::vector<std::array<int, 3>> triangles;
+
+  // A point on the edge: parameters only, with phi the short way round.
+  [[nodiscard]] SurfaceVertex between(const Between& place) const;
+};
+
+// phi x w with as many vertices, all round; w from -bound to bound.
+Surface cylinder_grid(int around, int along, double bound);
+
+// What refines a surface. `make` fills the images of new vertices, number `first` and those after
+// it, whose parents are given; false to stop.
+struct Refinement {
+  double longest = 0;   // edge, in the units of images
+  double sharpest = 0;  // angle between the normals of neighbours, in radians
+  double shortest = 0;  // edges are not cut for an angle below this
+  int most = 0;         // vertices
+  std::function<bool(int first, const std::vector<Between>& parents)> make;
+};
+
+// How many edges still ask to be cut when `most` is reached; -1 where it was stopped.
+long refine(const Refinement& how, Surface& surface);
+
+// Cuts the surface where `inside` changes and keeps what is inside. `locate` gives the place of the
+// border on the edges that cross it, from an inner vertex to an outer one, and `make` makes these
+// vertices.
+void clip(const std::vector<bool>& inside,
+          const std::function<void(std::vector<Between>&)>& locate,
+          const std::function<bool(int, const std::vector<Between>&)>& make,
+          Surface& surface);
+
+// Leaves out vertices that no triangle has. `kept` gets the old number of each.
+void drop_unused(Surface& surface, std::vector<int>& kept);
+
+}  // namespace carnot::internal

@@ -1,0 +1,85 @@
+// Fronts, spheres, caustics and cut loci of a point, as surfaces of triangles.
+//
+// The extremals of unit speed from a point are a cylinder of momenta, a circle times a line
+// (front/cylinder.h). Of these a mesh shows
+//
+//   the front    where all of them are at the time R,
+//   the sphere   those that are still shortest paths there: up to their cut time R; its border is
+//                sewn together along the cut locus, so that it is closed,
+//   the caustic  their first conjugate points, at times up to R,
+//   the cut      where they stop being the shortest, at times up to R.
+//
+// The cylinder is infinite. Far along its line extremals turn ever faster, and are conjugate ever
+// earlier. So a sphere needs but a part of it, and of the others the mesh leaves the rest out, and
+// says so. The mesh is refined (front/surface.h) until edges and angles are as asked for.
+//
+// For scenes with two admissible directions. With three coordinates the mesh is the whole surface;
+// with more, momenta are fixed until a circle times a line is left, and the mesh is a section.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "carnot/dynamics.h"
+
+namespace carnot {
+
+enum class FrontKind { kFront, kSphere, kCaustic, kCut };
+
+struct FrontOptions {
+  FrontKind what = FrontKind::kFront;
+  double length = 1;                            // R
+  std::vector<std::pair<int, double>> fixed{};  // momenta p_j(0)
+  std::vector<int> project{};  // the coordinates that are seen; empty: the first three
+  // The longest edge and, in radians, the largest angle between neighbouring triangles, in
+  // coordinates that are 1 wide. Edges are not cut for an angle below an eighth of the longest.
+  double edge = 0.1;
+  double angle = 0.35;
+  int most = 100000;   // vertices
+  double bound = 0;    // of the coordinate along the line; 0: chosen
+  bool times = false;  // cut and conjugate times at the vertices of a front, too
+  bool mod_angles = true;
+  std::uint64_t seed = 0;
+  int threads = 0;    // 0: all cores
+  Progress progress;  // returns false to stop
+};
+
+// NaN where a time was not asked for, infinite where there is none up to 2 R.
+struct FrontVertex {
+  std::vector<double> q;
+  std::vector<double> p0;  // of unit speed
+  double cut_time = std::numeric_limits<double>::quiet_NaN();
+  double conjugate_time = std::numeric_limits<double>::quiet_NaN();
+  const char* label = "";  // front, sphere, caustic or cut; on a seam: maxwell or conjugate
+};
+
+struct FrontMesh {
+  bool finished = false;  // false: stopped
+  std::string message;    // what the mesh leaves out
+  double length = 0;
+  std::vector<FrontVertex> vertices;
+  std::vector<std::array<int, 3>> triangles;
+  // Whether each edge is in two triangles, and then the Euler characteristic and, with three
+  // coordinates, the volume inside.
+  bool closed = false;
+  int euler = 0;
+  double volume = std::numeric_limits<double>::quiet_NaN();
+  long searches = 0;
+  double elapsed_seconds = 0;
+};
+
+// At `from`, of length n. Throws std::invalid_argument on bad input.
+FrontMesh wavefront(const Dynamics& dynamics,
+                    const std::vector<double>& from,
+                    const FrontOptions& options);
+
+// Throws what wavefront() would throw.
+void check_wavefront(const Dynamics& dynamics,
+                     const std::vector<double>& from,
+                     const FrontOptions& options);
+
+}  // namespace carnot
