@@ -53,7 +53,7 @@ OptionNames classified_options(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
     const bool flag = option->get_items_expected_max() == 0;
     for (const std::string& name : option->get_lnames()) {
-      const bool repeatable = name == "set" || name == "limit" || name == "disc";
+      const bool repeatable = name == "set" || name == "limit" || name == "disc" || name == "fix";
       auto& list = flag ? names.flags : repeatable ? names.repeatable : names.valued;
       list.push_back("--" + name);
     }

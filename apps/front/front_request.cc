@@ -1,10 +1,15 @@
 #include "front/front_request.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <stdexcept>
 #include <utility>
 
 #include "catalogue/holonomic_check.h"
 #include "catalogue/scene_choice.h"
 #include "text/numbers.h"
+#include "text/output_file.h"
 
 namespace carnot::apps {
 namespace {
@@ -50,16 +55,116 @@ std::vector<double> parse_momentum(const FrontCall& options,
   return p;
 }
 
+FrontKind parse_kind(const std::string& what) {
+  constexpr const char* kAccepted = "front, sphere, caustic or cut";
+  if (what.empty()) refuse_missing("--what", kAccepted);
+  if (what == "front") return FrontKind::kFront;
+  if (what == "sphere") return FrontKind::kSphere;
+  if (what == "caustic") return FrontKind::kCaustic;
+  if (what != "cut") refuse("--what", what, "unknown", kAccepted);
+  return FrontKind::kCut;
+}
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == ',') {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+// The number of a coordinate, which may have a prefix such as p_.
+int coordinate_of(const char* option,
+                  const std::string& text,
+                  const std::string& name,
+                  const std::string& prefix,
+                  const std::vector<std::string>& names) {
+  for (std::size_t j = 0; j < names.size(); ++j) {
+    if (prefix + names[j] == name) return static_cast<int>(j);
+  }
+  refuse(option, text, "there is no " + name, fmt::format("{}", fmt::join(names, ", ")));
+}
+
+// --fix p_NAME=VALUE
+std::pair<int, double> parse_fixed(const std::string& text, const std::vector<std::string>& names) {
+  const auto at = text.find('=');
+  if (at == std::string::npos) refuse("--fix", text, "there is no =", "p_NAME=VALUE");
+  const int j = coordinate_of("--fix", text, text.substr(0, at), "p_", names);
+  return {j, parse_real("--fix", text.substr(at + 1))};
+}
+
+void parse_surface(const FrontCall& options, const Run& run, FrontRequest& request) {
+  constexpr long kFewest = 1584;  // of the first mesh
+  constexpr long kMost = 5000000;
+  const auto names = coordinate_names(*run.entry);
+  if (options.length.empty()) refuse_missing("--length", "lengths > 0, as in 1 or 0.5,1,1.5");
+  for (const std::string& part : split(options.length)) {
+    request.lengths.push_back(parse_positive("--length", part));
+  }
+  for (const std::string& text : options.fix) {
+    request.front.fixed.push_back(parse_fixed(text, names));
+  }
+  if (!options.project.empty()) {
+    for (const std::string& name : split(options.project)) {
+      request.front.project.push_back(coordinate_of("--project", options.project, name, "", names));
+    }
+    if (request.front.project.size() != 3) {
+      refuse("--project", options.project, "these are not three", "three coordinates");
+    }
+  }
+  if (!options.edge.empty()) request.front.edge = parse_between("--edge", options.edge, 1e-3, 1);
+  if (!options.bound.empty()) request.front.bound = parse_positive("--bound", options.bound);
+  if (!options.vertices.empty()) {
+    request.front.most =
+        static_cast<int>(parse_integer("--vertices", options.vertices, kFewest, kMost));
+  }
+  if (!options.output.empty()) {
+    check_output_file("--output", options.output, {".vtp", ".ply", ".csv"});
+  }
+  request.output = options.output;
+  request.front.times = options.times;
+  request.check = options.check;
+  if (options.check && request.front.what != FrontKind::kSphere) {
+    refuse("--check", "", "only spheres are closed", "--check with --what sphere");
+  }
+}
+
+// What the library would refuse: scenes whose momenta of unit speed are no circle times a line.
+void check_surface(const FrontRequest& request, const Run& run) {
+  try {
+    check_wavefront(run.dynamics, request.from, request.front);
+  } catch (const std::invalid_argument& error) {
+    refuse(request.front.fixed.empty() ? "SCENE" : "--fix",
+           run.entry->info.name,
+           error.what(),
+           "a scene with two admissible directions, and --fix where it has more than three "
+           "coordinates");
+  }
+}
+
 }  // namespace
 
 FrontRequest check(const FrontCall& options) {
   FrontRequest request;
   request.run = check(options.run);
-  if (options.what.empty()) refuse_missing("--what", "cut");
-  if (options.what != "cut") refuse("--what", options.what, "unknown", "cut");
+  request.front.what = parse_kind(options.what);
   request.from = parse_start(options, request.run);
   check_scene(request.run, request.from);
-  request.momentum = parse_momentum(options, request.run, request.from);
+  if (options.momentum.empty()) {
+    parse_surface(options, request.run, request);
+    check_surface(request, request.run);
+  } else {
+    if (request.front.what != FrontKind::kCut) {
+      refuse("--momentum", options.momentum, "one extremal has a cut time only", "--what cut");
+    }
+    request.momentum = parse_momentum(options, request.run, request.from);
+    if (!options.output.empty()) check_output_file("--output", options.output, {".json"});
+  }
+  request.run.destination.output = options.momentum.empty() ? "" : options.output;
   if (!options.max_time.empty()) {
     request.max_time = parse_positive("--max-time", options.max_time);
   }
@@ -70,6 +175,9 @@ FrontRequest check(const FrontCall& options) {
     refuse("--mod-angles", "", "given besides --cover", "one of the two");
   }
   request.mod_angles = !options.cover;
+  request.front.mod_angles = request.mod_angles;
+  request.front.seed = request.run.seed;
+  request.front.threads = request.run.threads;
   return request;
 }
 

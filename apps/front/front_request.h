@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "carnot/shooting/wavefront.h"
 #include "run/run_options.h"
 
 namespace carnot::apps {
@@ -16,6 +17,15 @@ struct FrontCall {
   std::string what;
   std::string max_time;
   std::string time_limit;
+  std::string length;
+  std::vector<std::string> fix;
+  std::string project;
+  std::string edge;
+  std::string vertices;
+  std::string bound;
+  std::string output;
+  bool times = false;
+  bool check = false;
   bool cover = false;
   bool mod_angles = false;
 };
@@ -23,7 +33,11 @@ struct FrontCall {
 struct FrontRequest {
   Run run;
   std::vector<double> from;
-  std::vector<double> momentum;
+  std::vector<double> momentum;  // of one extremal; empty: surfaces are asked for
+  std::vector<double> lengths;
+  FrontOptions front;
+  std::string output;  // .vtp, .ply or .csv; empty: none
+  bool check = false;
   double max_time = 0;  // 0: chosen
   double time_limit = std::numeric_limits<double>::infinity();
   bool mod_angles = true;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "carnot/shooting/cut_time.h"
+#include "carnot/shooting/wavefront.h"
 #include "front/front_request.h"
 #include "run/delivery.h"
 
@@ -12,6 +13,11 @@ namespace carnot::apps {
 
 Result cut_time_result(const FrontRequest& request,
                        const CutTime& cut,
+                       const std::vector<std::string>& arguments);
+
+// What became of the surfaces, one for each length; the file that is asked for holds them.
+Result surfaces_result(const FrontRequest& request,
+                       const std::vector<FrontMesh>& meshes,
                        const std::vector<std::string>& arguments);
 
 }  // namespace carnot::apps

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -94,6 +95,79 @@ TEST(FrontCommand, TakesParametersTextsAndAnyNumberOfThreads) {
   EXPECT_NEAR(by_text.json()["cut_time"].get<double>(), one["cut_time"].get<double>(), 1e-11);
 }
 
+TEST(FrontCommand, WritesSurfaces) {
+  const Sandbox sandbox;
+  const Words sphere{"front",
+                     "heisenberg-group",
+                     "--from",
+                     "0,0,0",
+                     "--what",
+                     "sphere",
+                     "--length",
+                     "1",
+                     "--edge",
+                     "0.5",
+                     "--check",
+                     "--json",
+                     "--output"};
+  const Outcome outcome = sandbox.run(with(sphere, {"s.csv"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = outcome.json();
+  EXPECT_THAT(keys(json),
+              ElementsAre("version",
+                          "arguments",
+                          "scene",
+                          "parameters",
+                          "from",
+                          "method",
+                          "what",
+                          "status",
+                          "message",
+                          "surfaces"));
+  EXPECT_THAT(keys(json["surfaces"][0]),
+              ElementsAre("length",
+                          "vertices",
+                          "triangles",
+                          "left_out",
+                          "closed",
+                          "euler_characteristic",
+                          "volume",
+                          "searches",
+                          "elapsed_seconds"));
+  EXPECT_EQ(json["surfaces"][0]["euler_characteristic"], 2);
+  const std::string csv = read_text(sandbox.directory() / "s.csv");
+  EXPECT_THAT(csv, ::testing::StartsWith("q_x,q_y,q_z,p0_x,p0_y,p0_z,t_cut,t_conj,length,label\n"));
+  const long vertices = json["surfaces"][0]["vertices"].get<long>();
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), vertices + 1);
+  ASSERT_EQ(sandbox.run(with(sphere, {"s.ply"})).status, 0);
+  EXPECT_THAT(read_text(sandbox.directory() / "s.ply"),
+              HasSubstr("element vertex " + std::to_string(vertices) + "\n"));
+  ASSERT_EQ(sandbox.run(with(sphere, {"s.vtp"})).status, 0);
+  EXPECT_THAT(read_text(sandbox.directory() / "s.vtp"),
+              HasSubstr("NumberOfPoints=\"" + std::to_string(vertices) + "\""));
+}
+
+TEST(FrontCommand, FixesMomentaOfASection) {
+  const Outcome outcome = run({"front",
+                               "engel",
+                               "--from",
+                               "0,0,0,0",
+                               "--what",
+                               "front",
+                               "--length",
+                               "0.5,1",
+                               "--fix",
+                               "p_x4=0",
+                               "--project",
+                               "x1,x2,x4",
+                               "--edge",
+                               "1",
+                               "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.json()["surfaces"].size(), 2U);
+  EXPECT_THAT(outcome.json()["surfaces"][1]["left_out"].get<std::string>(), HasSubstr("beyond"));
+}
+
 TEST(FrontCommand, SaysThatTimeWasUp) {
   const Outcome late =
       run(unicycle({"--momentum", "0.4,0.3,0.9", "--time-limit", "1e-9", "--json"}));
@@ -109,7 +183,21 @@ TEST(FrontCommand, RefusesInOneLine) {
       {{"front", "unicycle", "--from", "0,0,0", "--momentum", "1,0,0"}, "--what"},
       {{"front", "unicycle", "--from", "0,0,0", "--what", "edge"}, "'edge'"},
       {{"front", "unicycle", "--momentum", "1,0,0", "--what", "cut"}, "--from"},
-      {{"front", "unicycle", "--from", "0,0,0", "--what", "cut"}, "--momentum"},
+      {{"front", "unicycle", "--from", "0,0,0", "--what", "cut"}, "--length"},
+      {unicycle({"--length", "0"}), "--length '0'"},
+      {unicycle({"--length", "1,x"}), "'x'"},
+      {unicycle({"--length", "1", "--fix", "p_q=1"}), "--fix 'p_q=1'"},
+      {unicycle({"--length", "1", "--fix", "p_y"}), "there is no ="},
+      {unicycle({"--length", "1", "--project", "x,y"}), "--project"},
+      {unicycle({"--length", "1", "--output", "a.stl"}), "'a.stl'"},
+      {unicycle({"--length", "1", "--check"}), "--check"},
+      {unicycle({"--length", "1", "--edge", "2"}), "--edge"},
+      {unicycle({"--length", "1", "--vertices", "9"}), "--vertices"},
+      {{"front", "grushin", "--from", "0,0", "--what", "front", "--length", "1"},
+       "three coordinates"},
+      {{"front", "engel", "--from", "0,0,0,0", "--what", "front", "--length", "1"}, "to be fixed"},
+      {{"front", "unicycle", "--from", "0,0,0", "--what", "sphere", "--momentum", "1,0,0"},
+       "--momentum"},
       {unicycle({"--momentum", "1,0"}), "'1,0'"},
       {unicycle({"--momentum", "0,1,0"}), "velocity is zero"},
       {unicycle({"--momentum", "1,0,0", "--max-time", "0"}), "--max-time"},
