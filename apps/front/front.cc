@@ -1,4 +1,5 @@
 // carnot front: surfaces that extremals from a point make, and how long one is a shortest path.
+#include <chrono>
 #include <memory>
 
 #include "carnot/shooting/cut_time.h"
@@ -53,11 +54,16 @@ int run_cut_time(const FrontRequest& request, const std::vector<std::string>& ar
 int run_surfaces(const FrontRequest& request, const std::vector<std::string>& arguments) {
   std::vector<FrontMesh> meshes;
   FrontOptions options = request.front;
-  options.progress = [](double /*fraction*/) { return !interrupted(); };
+  const auto began = std::chrono::steady_clock::now();
+  options.progress = [&](double /*fraction*/) {
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - began;
+    return !interrupted() && passed.count() < request.time_limit;
+  };
   for (const double length : request.lengths) {
     options.length = length;
     meshes.push_back(wavefront(request.run.dynamics, request.from, options));
-    if (!meshes.back().finished) return kInterrupted;
+    if (interrupted()) return kInterrupted;
+    if (!meshes.back().finished) break;
   }
   Destination destination = request.run.destination;
   destination.output = request.output;
@@ -86,6 +92,7 @@ void add_front_options(CLI::App& app, FrontCall& options) {
       options.output,
       "FILE",
       "write surfaces as .vtp, .ply or .csv; a cut time as .json");
+  add("--plot", options.run.destination.plot, "FILE", "draw surfaces: .png, .svg, .pdf or .gif");
   app.add_flag("--times", options.times, "cut and conjugate times of a front, too");
   app.add_flag("--check", options.check, "of a sphere: closed, Euler characteristic, volume");
   app.add_flag("--json", options.run.destination.json, "print one JSON object");

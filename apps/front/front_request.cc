@@ -162,6 +162,9 @@ FrontRequest check(const FrontCall& options) {
       refuse("--momentum", options.momentum, "one extremal has a cut time only", "--what cut");
     }
     request.momentum = parse_momentum(options, request.run, request.from);
+    if (!request.run.destination.plot.empty()) {
+      refuse("--plot", request.run.destination.plot, "a cut time is no picture", "--length R");
+    }
     if (!options.output.empty()) check_output_file("--output", options.output, {".json"});
   }
   request.run.destination.output = options.momentum.empty() ? "" : options.output;

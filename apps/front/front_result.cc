@@ -2,10 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
+#include "carnot/plots/script.h"
+#include "carnot/plots/surface_plot.h"
 #include "front/mesh_file.h"
+#include "run/ends.h"
 #include "text/text_table.h"
 
 namespace carnot::apps {
@@ -111,6 +116,7 @@ std::string surfaces_text(const FrontRequest& request, const std::vector<FrontMe
 // Why the surfaces are no result; empty where they are.
 std::string surfaces_failure(const FrontRequest& request, const std::vector<FrontMesh>& meshes) {
   for (const FrontMesh& mesh : meshes) {
+    if (!mesh.finished) return "the time limit was up before the surface was made";
     if (mesh.triangles.empty()) {
       return fmt::format("no triangles at the length {:g}: try a --bound", mesh.length);
     }
@@ -121,6 +127,68 @@ std::string surfaces_failure(const FrontRequest& request, const std::vector<Fron
     }
   }
   return "";
+}
+
+std::vector<int> seen_of(const FrontRequest& request) {
+  return request.front.project.empty() ? std::vector<int>{0, 1, 2} : request.front.project;
+}
+
+// The momentum that differs most on the surfaces: that along the line of the cylinder.
+int widest_momentum(const std::vector<FrontMesh>& meshes, int dof) {
+  int widest = 0;
+  double most = -1;
+  for (int j = 0; j < dof; ++j) {
+    double largest = 0;
+    for (const FrontMesh& mesh : meshes) {
+      for (const FrontVertex& v : mesh.vertices) largest = std::max(largest, std::abs(v.p0[j]));
+    }
+    if (largest > most) widest = j;
+    most = std::max(most, largest);
+  }
+  return widest;
+}
+
+// The colour tells times where they differ, and else the momentum along the line.
+std::string draw_surfaces(const FrontRequest& request,
+                          const std::vector<FrontMesh>& meshes,
+                          const std::string& file) {
+  const SceneInfo& info = request.run.dynamics.info;
+  const std::vector<int> seen = seen_of(request);
+  const FrontKind what = request.front.what;
+  const bool times = what == FrontKind::kCaustic || what == FrontKind::kCut;
+  const int momentum = widest_momentum(meshes, request.run.dynamics.dof);
+  plots::SurfacePage page;
+  page.title = plots::escaped(fmt::format("{}: {}", info.name, name_of(what)));
+  page.subtitle = "extremals of unit speed from " +
+                  plots::escaped(end_text(request.from, std::vector<bool>(request.from.size())));
+  page.color = times ? "length" : "p_{" + plots::symbol(info.configuration[momentum].name) + "}(0)";
+  for (int k = 0; k < 3; ++k) page.axes[k] = info.configuration[seen[k]];
+  page.halved = what == FrontKind::kFront || meshes.size() > 1;
+  for (const FrontMesh& mesh : meshes) {
+    plots::SurfaceSheet sheet;
+    sheet.title = fmt::format("{} {:g}", times ? "up to" : "length", mesh.length);
+    sheet.triangles = mesh.triangles;
+    for (const FrontVertex& v : mesh.vertices) {
+      sheet.points.push_back({v.q[seen[0]], v.q[seen[1]], v.q[seen[2]]});
+      const double time = what == FrontKind::kCut ? v.cut_time : v.conjugate_time;
+      sheet.values.push_back(times ? time : v.p0[momentum]);
+    }
+    page.sheets.push_back(std::move(sheet));
+  }
+  // Across the axis where most is to be seen.
+  std::size_t most = 0;
+  for (const int across : {1, 2, 0}) {
+    std::size_t pieces = 0;
+    const double at = request.from[seen[across]];
+    for (const auto& sheet : page.sheets) {
+      pieces += plots::section_of(sheet, across, at).size();
+    }
+    if (pieces <= 2 * most) continue;
+    most = pieces;
+    page.across = across;
+    page.at = at;
+  }
+  return plots::write_surfaces(file, page);
 }
 
 }  // namespace
@@ -134,12 +202,9 @@ Result surfaces_result(const FrontRequest& request,
   result.json = surfaces_json(request, meshes, result.message, arguments);
   result.text = [&] { return surfaces_text(request, meshes); };
   result.csv = [&] {
-    const std::vector<int> first{0, 1, 2};
-    return mesh_text(request.output,
-                     request.run.dynamics.info,
-                     meshes,
-                     request.front.project.empty() ? first : request.front.project);
+    return mesh_text(request.output, request.run.dynamics.info, meshes, seen_of(request));
   };
+  result.draw = [&](const std::string& file) { return draw_surfaces(request, meshes, file); };
   return result;
 }
 

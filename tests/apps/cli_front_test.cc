@@ -147,6 +147,37 @@ TEST(FrontCommand, WritesSurfaces) {
               HasSubstr("NumberOfPoints=\"" + std::to_string(vertices) + "\""));
 }
 
+TEST(FrontCommand, DrawsSurfaces) {
+  const Sandbox sandbox;
+  const Words front{"front",
+                    "heisenberg-group",
+                    "--from",
+                    "0,0,0",
+                    "--what",
+                    "front",
+                    "--length",
+                    "0.5,1",
+                    "--edge",
+                    "1",
+                    "--vertices",
+                    "1600",
+                    "--plot"};
+  const Outcome outcome = sandbox.run(with(front, {"f.svg"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_THAT(read_text(sandbox.directory() / "f.svg"), HasSubstr("section at y = 0"));
+}
+
+TEST(FrontCommand, GivesSurfacesUpWhenTimeIsUp) {
+  const Sandbox sandbox;
+  const Outcome late = sandbox.run(
+      unicycle({"--length", "1", "--time-limit", "1e-9", "--output", "a.csv", "--json"}));
+  EXPECT_EQ(late.status, 1);
+  EXPECT_EQ(late.json()["status"], "failed");
+  EXPECT_THAT(late.err, HasSubstr("time limit"));
+  EXPECT_TRUE(sandbox.files().empty());
+}
+
 TEST(FrontCommand, FixesMomentaOfASection) {
   const Outcome outcome = run({"front",
                                "engel",

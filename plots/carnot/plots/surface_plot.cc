@@ -1,0 +1,213 @@
+#include "carnot/plots/surface_plot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "carnot/plots/page.h"
+#include "carnot/plots/plot_file.h"
+#include "carnot/plots/script.h"
+
+namespace carnot::plots {
+namespace {
+
+constexpr double kWidth = 1400;
+constexpr double kHeight = 760;
+
+bool finite(const std::array<double, 3>& p) {
+  return std::all_of(p.begin(), p.end(), [](double x) { return std::isfinite(x); });
+}
+
+// The axes of a plane across one of three.
+std::array<int, 2> others(int across) {
+  if (across == 0) return {1, 2};
+  return across == 1 ? std::array{0, 2} : std::array{0, 1};
+}
+
+std::array<Axis, 3> axes_of(const SurfacePage& page) {
+  std::array<Interval, 3> ranges;
+  for (const SurfaceSheet& sheet : page.sheets) {
+    for (const auto& t : sheet.triangles) {
+      for (const int i : t) {
+        if (!finite(sheet.points[i])) continue;
+        for (int k = 0; k < 3; ++k) ranges[k].include(sheet.points[i][k]);
+      }
+    }
+  }
+  return {Axis(ranges[0]), Axis(ranges[1]), Axis(ranges[2])};
+}
+
+// A place, and the value there.
+using Valued = std::array<double, 4>;
+
+// What is drawn of a triangle: nothing, itself, or what is behind the section, three corners or
+// four.
+std::vector<Valued> drawn_part(const SurfacePage& page,
+                               const SurfaceSheet& sheet,
+                               const std::array<int, 3>& t) {
+  std::vector<Valued> corners;
+  for (const int i : t) {
+    const auto& p = sheet.points[i];
+    if (!finite(p) || !std::isfinite(sheet.values[i])) return {};
+    corners.push_back({p[0], p[1], p[2], sheet.values[i]});
+  }
+  if (!page.halved) return corners;
+  std::vector<Valued> behind;
+  for (int k = 0; k < 3; ++k) {
+    const Valued& a = corners[k];
+    const Valued& b = corners[(k + 1) % 3];
+    const bool a_behind = a[page.across] >= page.at;
+    if (a_behind) behind.push_back(a);
+    if (a_behind == (b[page.across] >= page.at)) continue;
+    const double part = (page.at - a[page.across]) / (b[page.across] - a[page.across]);
+    Valued border{};
+    for (int j = 0; j < 4; ++j) border[j] = a[j] + part * (b[j] - a[j]);
+    behind.push_back(border);
+  }
+  return behind;
+}
+
+// As "[a:b]", of what is drawn.
+std::string range_of_values(const SurfacePage& page) {
+  Interval range;
+  for (const SurfaceSheet& sheet : page.sheets) {
+    for (const auto& t : sheet.triangles) {
+      for (const Valued& corner : drawn_part(page, sheet, t)) range.include(corner[3]);
+    }
+  }
+  const Axis axis(range);
+  return "[" + number(axis.lower, 6) + ":" + number(axis.upper, 6) + "]";
+}
+
+// A triangle is a patch of two lines, of which one has become a point. Pieces with four corners are
+// two of them: the light falls on other patches as if they were turned round.
+void put_pieces(Script& script, const SurfacePage& page, const std::array<Axis, 3>& axes) {
+  const auto put = [&](const Valued& corner) {
+    for (int k = 0; k < 3; ++k) script << number(axes[k].at(corner[k]), 7) << " ";
+    script << number(corner[3], 5) << "\n";
+  };
+  script << "$surface << EOD\n";
+  for (const SurfaceSheet& sheet : page.sheets) {
+    for (const auto& t : sheet.triangles) {
+      const std::vector<Valued> piece = drawn_part(page, sheet, t);
+      for (std::size_t k = 2; k < piece.size(); ++k) {
+        put(piece[0]);
+        put(piece[k - 1]);
+        script << "\n";
+        put(piece[k]);
+        put(piece[k]);
+        script << "\n\n";
+      }
+    }
+  }
+  script << "EOD\n";
+}
+
+void draw_space(Script& script, const SurfacePage& page, const std::array<Axis, 3>& axes) {
+  constexpr std::array kLetters{"x", "y", "z"};
+  constexpr double kSides = 420;  // a side of the box, seen from aside, on the canvas
+  constexpr double kTics = 80;
+  put_pieces(script, page, axes);
+  script << "set lmargin -1\nset rmargin -1\nset bmargin -1\nset tmargin -1\n"
+         << "set origin 0, 0\nset size 0.53, 0.95\nset border 127 lw 0.5 lc rgb '#9a9a9a'\n"
+         << "set view 64, 40, 0.98, 1.2\nset xyplane 0\n"
+         << "set pm3d depthorder noborder\n"
+         << "set pm3d lighting primary 0.55 specular 0.25 spec2 0.1\n"
+         << "set palette defined (0 '#30123b', 0.2 '#2f6fd6', 0.45 '#1fb8a8', 0.65 '#a2d84a', "
+         << "0.85 '#f0a22e', 1 '#b5331f')\nset cbrange " << range_of_values(page) << "\n"
+         << "set colorbox user origin 0.53, 0.3 size 0.011, 0.36\nset cblabel "
+         << quoted_markup(page.color) << " tc rgb '#000000'\nset cbtics tc rgb '#000000'\n"
+         << "unset key\n";
+  for (int k = 0; k < 3; ++k) {
+    set_axis(script, kLetters[k], axes[k], kSides, kTics);
+    script << "set " << kLetters[k] << "tics tc rgb '#000000' offset 0, -0.3\nset " << kLetters[k]
+           << "label " << quoted_markup(axes[k].label(symbol(page.axes[k].name), page.axes[k].unit))
+           << " tc rgb '#000000' offset 0, 0" << (k == 2 ? " rotate" : "") << "\n";
+  }
+  script << "splot $surface using 1:2:3:4 with pm3d\n";
+  script << "unset pm3d\nunset colorbox\nunset zlabel\n";
+}
+
+void draw_section(Script& script,
+                  const Picture& picture,
+                  const SurfacePage& page,
+                  const std::array<Axis, 3>& axes) {
+  const auto [across, up] = others(page.across);
+  const Box box{925, 110, 430, 490};
+  Axis x = axes[across];
+  Axis y = axes[up];
+  constexpr double kMargin = 1.1;
+  constexpr double kTics = 90;
+  x.widen(kMargin);
+  y.widen(kMargin);
+  set_box(script, picture, box);
+  script << "set border 3 lw 0.8 lc rgb '#000000'\nset xtics nomirror\nset ytics nomirror\n"
+         << "set key outside top center horizontal\nset grid lw 0.5 lc rgb '#e4e4e4'\n";
+  set_axis(script, "x", x, box.width, kTics);
+  set_axis(script, "y", y, box.height, kTics);
+  script << "set xlabel "
+         << quoted_markup(x.label(symbol(page.axes[across].name), page.axes[across].unit))
+         << "\nset ylabel "
+         << quoted_markup(y.label(symbol(page.axes[up].name), page.axes[up].unit)) << "\n";
+  put_text(script,
+           picture,
+           box.x + box.width / 2,
+           box.y + box.height + 55,
+           "section at " + symbol(page.axes[page.across].name) + " = " + number(page.at, 4));
+  Plot plot(script, "plot", {x.lower, y.lower});
+  for (std::size_t i = 0; i < page.sheets.size(); ++i) {
+    Rows rows;
+    for (const auto& piece : section_of(page.sheets[i], page.across, page.at)) {
+      for (const auto& end : piece) rows.push_back({x.at(end[0]), y.at(end[1])});
+      rows.push_back(gap());
+    }
+    plot.add(rows, "with lines lw 1.4 " + line_color(i));
+    if (!page.sheets[i].title.empty()) {
+      plot.key("with lines lw 1.4 " + line_color(i), page.sheets[i].title);
+    }
+  }
+  plot.draw();
+}
+
+}  // namespace
+
+std::vector<std::array<std::array<double, 2>, 2>> section_of(const SurfaceSheet& sheet,
+                                                             int across,
+                                                             double at) {
+  const auto [x, y] = others(across);
+  std::vector<std::array<std::array<double, 2>, 2>> pieces;
+  for (const auto& t : sheet.triangles) {
+    std::vector<std::array<double, 2>> ends;
+    for (int k = 0; k < 3; ++k) {
+      const auto& a = sheet.points[t[k]];
+      const auto& b = sheet.points[t[(k + 1) % 3]];
+      if (!finite(a) || !finite(b) || (a[across] < at) == (b[across] < at)) continue;
+      const double part = (at - a[across]) / (b[across] - a[across]);
+      ends.push_back({a[x] + part * (b[x] - a[x]), a[y] + part * (b[y] - a[y])});
+    }
+    if (ends.size() == 2) pieces.push_back({ends[0], ends[1]});
+  }
+  return pieces;
+}
+
+std::string write_surfaces(const std::string& file, const SurfacePage& page) {
+  Picture picture;
+  picture.width = kWidth;
+  picture.height = kHeight;
+  Script script;
+  const std::array<Axis, 3> axes = axes_of(page);
+  script << "set multiplot\n";
+  put_text(script,
+           picture,
+           kWidth / 2,
+           kHeight - 28,
+           page.title + (page.subtitle.empty() ? "" : "   {/*0.8 " + page.subtitle + "}"));
+  draw_space(script, page, axes);
+  clear_settings(script);
+  draw_section(script, picture, page, axes);
+  script << "unset multiplot\n";
+  picture.commands = script.text();
+  return write_picture(file, picture);
+}
+
+}  // namespace carnot::plots

@@ -1,0 +1,36 @@
+// Surfaces as pictures: the section, and the file.
+#include "carnot/plots/surface_plot.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace carnot::plots::surface_plot_test {
+namespace {
+
+// One triangle from y = -1 to y = 1.
+SurfaceSheet triangle() {
+  SurfaceSheet sheet;
+  sheet.points = {{0, -1, 0}, {2, 1, 0}, {0, 1, 2}};
+  sheet.values = {0, 1, 2};
+  sheet.triangles = {{0, 1, 2}};
+  return sheet;
+}
+
+TEST(SurfacePlot, SectionsCutTrianglesHalfWay) {
+  const auto pieces = section_of(triangle(), 1, 0);
+  ASSERT_EQ(pieces.size(), 1U);
+  EXPECT_EQ(pieces[0][0], (std::array<double, 2>{1, 0}));
+  EXPECT_EQ(pieces[0][1], (std::array<double, 2>{0, 1}));
+  EXPECT_TRUE(section_of(triangle(), 1, 2).empty());
+}
+
+TEST(SurfacePlot, SectionsLeaveOutWhatIsNotFinite) {
+  SurfaceSheet sheet = triangle();
+  sheet.points[2][0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(section_of(sheet, 1, 0).empty());
+}
+
+}  // namespace
+}  // namespace carnot::plots::surface_plot_test
