@@ -101,7 +101,7 @@ class FrontMaker {
   // the larger it is. Infinite where there is no such w.
   [[nodiscard]] double conjugate_before(double target) const {
     constexpr int kRays = 16;
-    constexpr int kDoublings = 40;
+    constexpr int kDoublings = 8;  // beyond, steps become too short for a mesh
     constexpr double kEnough = 0.02;
     const auto all = [&](double w) {
       std::vector<char> earlier(2 * kRays, 0);
@@ -433,7 +433,8 @@ class FrontMaker {
     text.precision(4);
     if (options_.what != FrontKind::kSphere) {
       text << "left out: momenta beyond " << bound_ << " along the line of the cylinder";
-      if (!at_length()) text << ", where times are below " << options_.length / 8;
+      if (!at_length() && options_.bound == 0)
+        text << ", where times are below " << options_.length / 8;
     }
     if (rough_ > 0) {
       if (!text.str().empty()) text << "; ";
