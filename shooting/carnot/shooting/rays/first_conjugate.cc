@@ -81,16 +81,24 @@ double first_conjugate_time(const Ray& ray, double horizon) {
   constexpr double kRounding = 1e-13;  // of a determinant that vanishes along an abnormal extremal
   const Dynamics& dynamics = ray.dynamics();
   const int n = dynamics.dof;
-  const long steps = ray.enough_steps(horizon);
+  // How many steps are enough is found for stretches that double: most rays are conjugate early.
+  constexpr double kFirst = 0.125;
   Node node{0, ray.start(), Eigen::MatrixXd::Zero(2 * n, n)};
   node.columns.bottomRows(n).setIdentity();
-  for (long i = 1; i <= steps; ++i) {
-    Node next;
-    const double t = horizon * static_cast<double>(i) / static_cast<double>(steps);
-    if (!advance(dynamics, node, t, next)) return std::numeric_limits<double>::quiet_NaN();
-    if (std::abs(next.value) <= kRounding * next.size) continue;
-    if (node.value * next.value < 0) return locate(dynamics, node, next);
-    node = std::move(next);
+  double t = 0;
+  for (double part = kFirst; part <= 1; part *= 2) {
+    const double end = part * horizon;
+    const double h = end / static_cast<double>(ray.enough_steps(end));
+    const long count = std::max(1L, std::lround((end - t) / h));
+    const double begin = t;
+    for (long i = 1; i <= count; ++i) {
+      Node next;
+      t = begin + (end - begin) * static_cast<double>(i) / static_cast<double>(count);
+      if (!advance(dynamics, node, t, next)) return std::numeric_limits<double>::quiet_NaN();
+      if (std::abs(next.value) <= kRounding * next.size) continue;
+      if (node.value * next.value < 0) return locate(dynamics, node, next);
+      node = std::move(next);
+    }
   }
   return std::numeric_limits<double>::infinity();
 }
