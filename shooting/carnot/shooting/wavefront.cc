@@ -1,6 +1,8 @@
 #include "carnot/shooting/wavefront.h"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <numbers>
