@@ -5,7 +5,6 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <numbers>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -13,6 +12,8 @@
 #include "carnot/numerics/parallel.h"
 #include "carnot/shooting/front/cut_values.h"
 #include "carnot/shooting/front/cylinder.h"
+#include "carnot/shooting/front/momentum_bound.h"
+#include "carnot/shooting/front/ray_ends.h"
 #include "carnot/shooting/front/seam.h"
 #include "carnot/shooting/front/surface.h"
 #include "carnot/shooting/rays/first_conjugate.h"
@@ -99,35 +100,6 @@ class FrontMaker {
     parallel_for(last - first, thread_count(options_.threads), [&](int k) { work(first + k); });
   }
 
-  // The least |w| from which on all extremals are conjugate before `target`: they turn the faster
-  // the larger it is. Infinite where there is no such w.
-  [[nodiscard]] double conjugate_before(double target) const {
-    constexpr int kRays = 16;
-    constexpr int kDoublings = 8;  // beyond, steps become too short for a mesh
-    constexpr double kEnough = 0.02;
-    const auto all = [&](double w) {
-      std::vector<char> earlier(2 * kRays, 0);
-      parallel_for(2 * kRays, thread_count(options_.threads), [&](int k) {
-        const double phi = 2 * std::numbers::pi * (k / 2 + 0.37) / kRays;
-        const Ray ray(dynamics_, from_, cylinder_.momentum(phi, k % 2 == 0 ? w : -w));
-        earlier[k] = first_conjugate_time(ray, 1.01 * target) <= target ? 1 : 0;
-      });
-      return std::all_of(earlier.begin(), earlier.end(), [](char x) { return x != 0; });
-    };
-    double low = 0;
-    double high = 1 / target;
-    for (int i = 0; i < kDoublings && !all(high); ++i) {
-      low = high;
-      high *= 2;
-    }
-    if (!all(high)) return kNone;
-    while (high - low > kEnough * high) {
-      const double middle = 0.5 * (low + high);
-      (all(middle) ? high : low) = middle;
-    }
-    return high;
-  }
-
   [[nodiscard]] double chosen_bound() const {
     // Of a front: what is conjugate up to half its length, some two turns. Of what ends at R: down
     // to an eighth of it, which looks much the same, only smaller.
@@ -137,7 +109,8 @@ class FrontMaker {
     double part = 1;
     if (options_.what == FrontKind::kFront) part = kOfFront;
     if (!at_length()) part = kOfTimes;
-    const double bound = conjugate_before(part * options_.length);
+    const double bound =
+        conjugate_bound(dynamics_, from_, cylinder_, part * options_.length, options_.threads);
     return std::isfinite(bound) ? bound : kAnyway / options_.length;
   }
 
@@ -147,7 +120,14 @@ class FrontMaker {
     ends_.resize(static_cast<std::size_t>(last) * n_, kUnknown);
     if (!go_on()) return false;
     if (at_length()) {
-      flow_all(first, last);
+      const std::vector<double> ends =
+          ray_ends(dynamics_,
+                   from_,
+                   momenta_from(first),
+                   {cylinder_.momentum(0.7, bound_), cylinder_.momentum(2.3, -bound_)},
+                   options_.length,
+                   options_.threads);
+      std::copy(ends.begin(), ends.end(), ends_.begin() + static_cast<long>(first) * n_);
     } else {
       times_.resize(last, kUnknown);
       for_all(first, last, [&](int i) {
@@ -169,34 +149,6 @@ class FrontMaker {
       }
     }
     return go_on();
-  }
-
-  // Side by side where the method has it; else with as many steps as most of them need.
-  void flow_all(int first, int last) {
-    constexpr double kTolerance = 1e-12;
-    const int size = 2 * n_;
-    std::vector<double> z;
-    z.reserve(static_cast<std::size_t>(last - first) * size);
-    for (int i = first; i < last; ++i) {
-      const std::vector<double> p = momentum(i);
-      z.insert(z.end(), from_.begin(), from_.end());
-      z.insert(z.end(), p.begin(), p.end());
-    }
-    const int count = last - first;
-    if (dynamics_.has_adaptive_batch()) {
-      (void)dynamics_.adaptive_batch(0, options_.length, kTolerance, count, z, options_.threads);
-    } else {
-      const long steps = std::max(
-          Ray(dynamics_, from_, cylinder_.momentum(0.7, bound_)).enough_steps(options_.length),
-          Ray(dynamics_, from_, cylinder_.momentum(2.3, -bound_)).enough_steps(options_.length));
-      const StepPlan plan = StepPlan::equal(0, options_.length, steps);
-      (void)dynamics_.flow_batch(plan, count, z, options_.threads);
-    }
-    for (int k = 0; k < count; ++k) {
-      std::copy_n(z.begin() + static_cast<long>(k) * size,
-                  n_,
-                  ends_.begin() + static_cast<long>(first + k) * n_);
-    }
   }
 
   // How wide the first images are in each coordinate that is seen.
