@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "carnot/shooting/path/discrete_newton.h"
 #include "carnot/shooting/path/relaxation.h"
@@ -50,6 +52,35 @@ TEST(Refinement, ChangesFallByFour) {
       EXPECT_NEAR(last / refined.change, 4, 0.2);  // 4 + O(h^2)
     }
     last = refined.change;
+  }
+}
+
+// What the doubling of the grid changes of extrapolated nodes and momenta falls by sixteen.
+TEST(Refinement, ExtrapolatedPathsConvergeWithTheFourthOrder) {
+  constexpr double kSecondOrder = 4;
+  const BoundaryValueProblem problem = test::sideways();
+  const Path coarse = tight(problem);
+  std::vector<Path> paths;
+  for (const int intervals : {128, 256, 512}) {
+    RefinementOptions options;
+    options.enough = 0;
+    options.max_intervals = intervals;
+    paths.push_back(refine(problem, options, coarse).path);
+    ASSERT_EQ(paths.back().intervals, intervals / 2);
+  }
+  const auto change = [&](std::vector<double> Path::*numbers, int finer) {
+    double largest = 0;
+    for (int i = 0; i <= paths[0].intervals; ++i) {
+      for (int j = 0; j < coarse.dof; ++j) {
+        const auto at = [&](int k) { return ((i << k) * coarse.dof) + j; };
+        const double before = (paths[finer - 1].*numbers)[at(finer - 1)];
+        largest = std::max(largest, std::abs((paths[finer].*numbers)[at(finer)] - before));
+      }
+    }
+    return largest;
+  };
+  for (const auto numbers : {&Path::q, &Path::p}) {
+    EXPECT_GT(change(numbers, 1) / change(numbers, 2), 2 * kSecondOrder);
   }
 }
 
