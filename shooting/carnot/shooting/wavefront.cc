@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -16,6 +17,7 @@
 #include "carnot/shooting/front/ray_ends.h"
 #include "carnot/shooting/front/seam.h"
 #include "carnot/shooting/front/surface.h"
+#include "carnot/shooting/linear/illinois.h"
 #include "carnot/shooting/rays/first_conjugate.h"
 #include "carnot/shooting/rays/ray.h"
 
@@ -249,32 +251,17 @@ class FrontMaker {
 
   // The place on an edge where the time is the length.
   void locate(Between& place) {
-    constexpr int kIterations = 50;
     constexpr double kEnough = 1e-13;
     const double wanted = 1 / options_.length;
     const auto time = [&](int i) { return needs_cuts() ? cuts_[i].t : times_[i]; };
-    double a = 0;
-    double b = 1;
-    double at_a = 1 / time(place.a) - wanted;
-    double at_b = 1 / time(place.b) - wanted;
-    for (int i = 0; i < kIterations && std::abs(b - a) > kEnough && at_b != at_a; ++i) {
-      const double part = b - at_b * (b - a) / (at_b - at_a);
+    const auto rate_at = [&](double part) {
       const SurfaceVertex trial = surface_.between({place.a, place.b, part});
       const int near = std::abs(part) < 0.5 && std::isfinite(time(place.a)) ? place.a : place.b;
       const double t = value_at(cylinder_.momentum(trial.phi, trial.w), near).t;
-      const double at = 1 / t - wanted;
-      if (at * at_b > 0) {
-        at_a *= 0.5;
-      } else {
-        a = b;
-        at_a = at_b;
-      }
-      const double change = std::abs(part - b);
-      b = part;
-      at_b = at;
-      if (change <= kEnough || at == 0) break;
-    }
-    place.part = b;
+      return std::optional(1 / t - wanted);
+    };
+    place.part =
+        illinois(0, 1 / time(place.a) - wanted, 1, 1 / time(place.b) - wanted, kEnough, rate_at);
   }
 
   // Leaves the inside, with its border and, of a sphere, sewn.

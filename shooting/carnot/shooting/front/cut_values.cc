@@ -277,15 +277,4 @@ int CutValues::check(int count, const std::vector<std::vector<int>>& neighbours)
   return lower;
 }
 
-void CutValues::keep(const std::vector<int>& kept) {
-  std::vector<std::vector<double>> momenta;
-  std::vector<CutValue> values;
-  for (const int i : kept) {
-    momenta.push_back(std::move(momenta_[i]));
-    values.push_back(std::move(values_[i]));
-  }
-  momenta_ = std::move(momenta);
-  values_ = std::move(values);
-}
-
 }  // namespace carnot::internal

@@ -56,8 +56,6 @@ class CutValues {
   [[nodiscard]] CutValue beside(const std::vector<double>& p, int i);
   // Searches so many rays once more, spread evenly, and takes what is less. How many were.
   int check(int count, const std::vector<std::vector<int>>& neighbours);
-  // Leaves out all but these.
-  void keep(const std::vector<int>& kept);
 
  private:
   [[nodiscard]] Ray ray(int i) const { return {dynamics_, from_, momenta_[i]}; }

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 
 #include "carnot/shooting/linear/dense.h"
+#include "carnot/shooting/linear/illinois.h"
 
 namespace carnot::internal {
 namespace {
@@ -48,31 +50,14 @@ bool advance(const Dynamics& dynamics, const Node& from, double t, Node& to) {
   return std::isfinite(to.value);
 }
 
-// Where the sign changes between two nodes, by secants.
+// Where the sign changes between two nodes.
 double locate(const Dynamics& dynamics, const Node& low, const Node& high) {
-  constexpr int kIterations = 30;
   constexpr double kEnough = 1e-14;  // relative
-  double a = low.t;
-  double at_a = low.value;
-  double b = high.t;
-  double at_b = high.value;
   Node middle;
-  for (int i = 0; i < kIterations && std::abs(b - a) > kEnough * b && at_b != at_a; ++i) {
-    const double t = b - at_b * (b - a) / (at_b - at_a);
-    if (t == b || !advance(dynamics, low, t, middle)) break;
-    // The end that stays counts half (the Illinois method).
-    if (middle.value * at_b > 0) {
-      at_a *= 0.5;
-    } else {
-      a = b;
-      at_a = at_b;
-    }
-    const double change = std::abs(t - b);
-    b = t;
-    at_b = middle.value;
-    if (change <= kEnough * b || at_b == 0) break;
-  }
-  return b;
+  const auto value_at = [&](double t) {
+    return advance(dynamics, low, t, middle) ? std::optional(middle.value) : std::nullopt;
+  };
+  return illinois(low.t, low.value, high.t, high.value, kEnough * high.t, value_at);
 }
 
 }  // namespace

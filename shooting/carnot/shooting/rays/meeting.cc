@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "carnot/shooting/linear/dense.h"
+#include "carnot/shooting/linear/illinois.h"
 #include "carnot/shooting/linear/round_off.h"
 #include "carnot/shooting/problem/units.h"
 
@@ -190,26 +192,17 @@ class Branch {
   double value_ = 0;
 };
 
-// Between two values of the branch where the excess has different signs: where it is zero, by
-// secants. The equations of a meeting would be badly conditioned there.
+// Between two values of the branch where the excess has different signs: goes to where it is zero.
+// The equations of a meeting would be badly conditioned there.
 bool find_zero(double low, double at_low, double high, double at_high, long steps, Branch& branch) {
-  constexpr int kIterations = 40;
-  constexpr double kEnough = 1e-13;
-  for (int i = 0; i < kIterations && std::abs(high - low) > kEnough * high; ++i) {
-    const double value = high - at_high * (high - low) / (at_high - at_low);
-    if (!branch.go_to(value, steps)) return false;
-    const double excess = branch.excess();
-    const bool same_side = excess * at_high > 0;
-    // The end that stays counts half, or it would stay for ever (the Illinois method).
-    if (same_side) at_low *= 0.5;
-    if (!same_side) low = high;
-    if (!same_side) at_low = at_high;
-    if (value == high) break;
-    high = value;
-    at_high = excess;
-    if (excess == 0) break;
-  }
-  return true;
+  constexpr double kEnough = 1e-13;  // relative
+  bool found = true;
+  const auto excess_at = [&](double value) {
+    found = branch.go_to(value, steps);
+    return found ? std::optional(branch.excess()) : std::nullopt;
+  };
+  illinois(low, at_low, high, at_high, kEnough * high, excess_at);
+  return found;
 }
 
 // On one side.
