@@ -17,18 +17,6 @@ namespace {
 
 constexpr long kMostProblems = 1000000000;
 
-std::vector<std::string> split(const std::string& text, char at) {
-  std::vector<std::string> items(1);
-  for (const char c : text) {
-    if (c == at) {
-      items.emplace_back();
-    } else {
-      items.back() += c;
-    }
-  }
-  return items;
-}
-
 std::string trimmed(const std::string& text) {
   const std::size_t first = text.find_first_not_of(" \t\n");
   if (first == std::string::npos) return "";

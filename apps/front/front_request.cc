@@ -65,18 +65,6 @@ FrontKind parse_kind(const std::string& what) {
   return FrontKind::kCut;
 }
 
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == ',') {
-      parts.emplace_back();
-    } else {
-      parts.back() += c;
-    }
-  }
-  return parts;
-}
-
 // The number of a coordinate, which may have a prefix such as p_.
 int coordinate_of(const char* option,
                   const std::string& text,
@@ -102,14 +90,14 @@ void parse_surface(const FrontCall& options, const Run& run, FrontRequest& reque
   constexpr long kMost = 5000000;
   const auto names = coordinate_names(*run.entry);
   if (options.length.empty()) refuse_missing("--length", "lengths > 0, as in 1 or 0.5,1,1.5");
-  for (const std::string& part : split(options.length)) {
+  for (const std::string& part : split(options.length, ',')) {
     request.lengths.push_back(parse_positive("--length", part));
   }
   for (const std::string& text : options.fix) {
     request.front.fixed.push_back(parse_fixed(text, names));
   }
   if (!options.project.empty()) {
-    for (const std::string& name : split(options.project)) {
+    for (const std::string& name : split(options.project, ',')) {
       request.front.project.push_back(coordinate_of("--project", options.project, name, "", names));
     }
     if (request.front.project.size() != 3) {

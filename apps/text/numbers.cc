@@ -122,6 +122,18 @@ void refuse_missing(std::string_view option, std::string_view accepted) {
   refuse(option, "", "is missing", accepted);
 }
 
+std::vector<std::string> split(std::string_view text, char at) {
+  std::vector<std::string> items(1);
+  for (const char c : text) {
+    if (c == at) {
+      items.emplace_back();
+    } else {
+      items.back() += c;
+    }
+  }
+  return items;
+}
+
 double parse_real(std::string_view option, std::string_view text) {
   const auto value = read_real(text);
   if (!value) refuse(option, text, "not a finite number", kReal);

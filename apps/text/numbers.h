@@ -21,6 +21,9 @@ namespace carnot::apps {
                          std::string_view accepted);
 [[noreturn]] void refuse_missing(std::string_view option, std::string_view accepted);
 
+// What stands between the `at`s, in order; one item more than there are of them.
+std::vector<std::string> split(std::string_view text, char at);
+
 double parse_real(std::string_view option, std::string_view text);
 double parse_positive(std::string_view option, std::string_view text);
 
