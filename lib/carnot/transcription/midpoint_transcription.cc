@@ -24,8 +24,6 @@ using LanePack = Pack<kLanes>;
 template <class T, int known>
 class Rows {
  public:
-  using Number = T;
-
   explicit Rows(T* data) : data_(data) {}
 
   // Row i.
