@@ -93,8 +93,8 @@ Json identity_of(const AtlasCall& call, const Run& run, const ProblemList& list)
             {"minimiser", search.minimiser},
             {"time_limit", search.time_limit},
             {"mod_angles", search.mod_angles},
-            {"limits", search.limits},
-            {"discs", search.discs},
+            {"limits", search.asked.limits},
+            {"discs", search.asked.discs},
             {"trajectories", call.trajectories},
             {"field", call.field}}},
           {"problems", list.identity()}};
@@ -239,7 +239,7 @@ class Atlas {
     if (options_.all || options_.count > 1) {
       refuse("--field", "", "keeps one geodesic for each point", "--count 1");
     }
-    if (!search.limits.empty() || !search.discs.empty() || !run_.dynamics.info.limits.empty()) {
+    if (search.asked.any() || !run_.dynamics.info.limits.empty()) {
       refuse("--field", "", "knows no limits", "a grid without --field");
     }
     if (list_->has_free() || run_.samples > 0 || call_.resume) {

@@ -17,7 +17,7 @@ std::shared_ptr<const Model> Models::of(const ParameterValues& parameters) {
   Run run = run_;
   run.parameters = parameters;
   if (parameters != run_.parameters) run.dynamics = run_.make(parameters);
-  model->limits = limits_of(search_, run);
+  model->limits = limits_of(search_.asked, run);
   model->dynamics = std::move(run.dynamics);
   models_.emplace(parameters, model);
   order_.push_back(parameters);

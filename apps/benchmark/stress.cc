@@ -10,7 +10,6 @@
 #include "benchmark/benchmark_clock.h"
 #include "carnot/numerics/parallel.h"
 #include "carnot/shooting/find_geodesics.h"
-#include "catalogue/limit_choice.h"
 #include "catalogue/method_table.h"
 #include "catalogue/scene_choice.h"
 #include "catalogue/text_entry.h"
@@ -18,6 +17,7 @@
 #include "run/geodesic_text.h"
 #include "run/laboratory.h"
 #include "run/random_target.h"
+#include "run/search_options.h"
 #include "run/subcommands.h"
 #include "text/numbers.h"
 #include "text/progress_bar.h"
@@ -52,8 +52,7 @@ struct StressOptions {
   std::string threads;
   Destination destination;
   std::string time_limit;
-  std::vector<std::string> limits;
-  std::vector<std::string> discs;
+  AskedLimits asked;
 };
 
 struct Trial {
@@ -220,10 +219,8 @@ int run_stress(const StressOptions& options, const std::vector<std::string>& arg
   course.dynamics =
       as_text ? dynamics_of_text(entry, parameters) : entry.make(parameters, method.name);
   const Dynamics& dynamics = course.dynamics;
-  course.limits = dynamics.info.limits;
-  if (!options.limits.empty() || !options.discs.empty()) {
-    course.limits = choose_limits(entry, parameters, options.limits, options.discs);
-  }
+  course.limits =
+      options.asked.any() ? choose_limits(entry, parameters, options.asked) : dynamics.info.limits;
   if (dynamics.forced > 0 && !dynamics.on_leaves) {
     refuse("--method", options.method, "searches by RATTLE take too long", "none, for gauss16");
   }
@@ -260,12 +257,7 @@ void add_stress(CLI::App& app, Invocation& invocation) {
   add("--seed", options->seed, "N", "fixes all randomness (0)");
   add("--threads", options->threads, "N", "threads; the answer does not depend on it (all)");
   add("--time-limit", options->time_limit, "SECONDS", "of each target (none)");
-  stress.add_option("--limit", options->limits, "keep an expression in a range (repeatable)")
-      ->type_name("'EXPR in A:B'")
-      ->allow_extra_args(false);
-  stress.add_option("--disc", options->discs, "keep the body's points out of a disc (repeatable)")
-      ->type_name("X,Y,R")
-      ->allow_extra_args(false);
+  add_limit_options(stress, options->asked);
   add_table_options(stress, options->destination);
   stress.footer(kStressFooter);
   stress.callback([options, &invocation] {

@@ -50,8 +50,7 @@ std::string limit_statements(const std::string& text, std::size_t number) {
 }
 
 std::string disc_statement(const std::string& text) {
-  const std::vector<double> disc = parse_vector("--disc", text, {"x", "y", "radius"});
-  if (!(disc[2] > 0)) refuse("--disc", text, "the radius is not positive", "X,Y,R with R > 0");
+  const std::vector<double> disc = parse_disc("--disc", text);
   return fmt::format("disc ({:.17g}, {:.17g}), {:.17g}", disc[0], disc[1], disc[2]);
 }
 
@@ -68,27 +67,32 @@ std::string complaint(const std::string& what) {
 
 }  // namespace
 
+std::vector<double> parse_disc(std::string_view option, const std::string& text) {
+  std::vector<double> disc = parse_vector(option, text, {"x", "y", "radius"});
+  if (!(disc[2] > 0)) refuse(option, text, "the radius is not positive", "X,Y,R with R > 0");
+  return disc;
+}
+
 std::vector<Limit> choose_limits(const SceneEntry& entry,
                                  const ParameterValues& parameters,
-                                 const std::vector<std::string>& limits,
-                                 const std::vector<std::string>& discs) {
+                                 const AskedLimits& asked) {
   std::string text = text_of_scene(entry);
   if (!text.empty() && text.back() != '\n') text += '\n';
   TextScene known = scene_from_text(text, "scene", "scene");
   // One at a time, so that a refusal names the one that is wrong.
-  const auto add = [&](const char* option, const std::string& asked, const std::string& statement) {
+  const auto add = [&](const char* option, const std::string& typed, const std::string& statement) {
     text += statement + '\n';
     try {
       known = scene_from_text(text, "scene", "scene");
     } catch (const language::TextError& error) {
       throw std::invalid_argument(
-          fmt::format("{} '{}': {}", option, asked, complaint(error.what())));
+          fmt::format("{} '{}': {}", option, typed, complaint(error.what())));
     }
   };
-  for (std::size_t i = 0; i < limits.size(); ++i) {
-    add("--limit", limits[i], limit_statements(limits[i], i + 1));
+  for (std::size_t i = 0; i < asked.limits.size(); ++i) {
+    add("--limit", asked.limits[i], limit_statements(asked.limits[i], i + 1));
   }
-  for (const std::string& disc : discs) add("--disc", disc, disc_statement(disc));
+  for (const std::string& disc : asked.discs) add("--disc", disc, disc_statement(disc));
   std::map<std::string, double> values;
   for (const TextParameter& parameter : known.parameters()) {
     const auto found = parameters.find(parameter.name);

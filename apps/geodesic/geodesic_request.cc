@@ -13,7 +13,7 @@ GeodesicRequest check(const GeodesicCall& options, Run run) {
   GeodesicRequest request;
   request.run = std::move(run);
   request.ends = parse_ends(options.from, options.to, options.time, request.run);
-  request.ends.limits = limits_of(options.search, request.run);
+  request.ends.limits = limits_of(options.search.asked, request.run);
   request.options = check(options.search, request.run);
   if (!options.guess.empty()) {
     request.options.guess =

@@ -6,7 +6,6 @@
 
 #include "carnot/language/nearest.h"
 #include "carnot/shooting/find_geodesics.h"
-#include "catalogue/limit_choice.h"
 #include "text/numbers.h"
 
 namespace carnot::apps {
@@ -28,6 +27,15 @@ std::string check_minimiser(const std::string& name) {
 
 }  // namespace
 
+void add_limit_options(CLI::App& app, AskedLimits& asked) {
+  app.add_option("--limit", asked.limits, "keep an expression in a range (repeatable)")
+      ->type_name("'EXPR in A:B'")
+      ->allow_extra_args(false);
+  app.add_option("--disc", asked.discs, "keep the body's points out of a disc (repeatable)")
+      ->type_name("X,Y,R")
+      ->allow_extra_args(false);
+}
+
 void add_search_options(CLI::App& app, SearchOptions& options) {
   const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
     app.add_option(name, value, help)->type_name(type);
@@ -46,12 +54,7 @@ void add_search_options(CLI::App& app, SearchOptions& options) {
       "newton, ceres, nlopt or nlopt:NAME, NAME one of slsqp, lbfgs, mlsl, isres, crs (newton)");
   add("--time-limit", options.time_limit, "SECONDS", "end with what was found by then (none)");
   app.add_flag("--mod-angles", options.mod_angles, "angles agree modulo their periods");
-  app.add_option("--limit", options.limits, "keep an expression in a range (repeatable)")
-      ->type_name("'EXPR in A:B'")
-      ->allow_extra_args(false);
-  app.add_option("--disc", options.discs, "keep the body's points out of a disc (repeatable)")
-      ->type_name("X,Y,R")
-      ->allow_extra_args(false);
+  add_limit_options(app, options.asked);
 }
 
 GeodesicOptions check(const SearchOptions& options, const Run& run) {
@@ -83,9 +86,9 @@ GeodesicOptions check(const SearchOptions& options, const Run& run) {
   return search;
 }
 
-std::vector<Limit> limits_of(const SearchOptions& options, const Run& run) {
-  if (options.limits.empty() && options.discs.empty()) return run.dynamics.info.limits;
-  return choose_limits(*run.entry, run.parameters, options.limits, options.discs);
+std::vector<Limit> limits_of(const AskedLimits& asked, const Run& run) {
+  if (!asked.any()) return run.dynamics.info.limits;
+  return choose_limits(*run.entry, run.parameters, asked);
 }
 
 }  // namespace carnot::apps
