@@ -8,7 +8,6 @@
 #include <string>
 
 #include "carnot/make_limit.h"
-#include "carnot/shooting/continuation.h"
 #include "carnot/shooting/find_geodesics.h"
 #include "carnot/shooting/path/interior_point.h"
 #include "carnot/shooting/path/refinement.h"
@@ -265,15 +264,25 @@ TEST(LimitedGeodesics, AreCheckedWithoutSamples) {
   }
 }
 
+// An image of the target that is beyond a limit is none to go to; the others are.
+TEST(LimitedGeodesics, GoToTheImagesThatKeepToLimits) {
+  BoundaryValueProblem problem = parking("limit -0.5 < phi - theta < 0.5 \"steering\"\n");
+  const double action = best(problem).action;
+  problem.to[3] = 2 * std::acos(-1.0);
+  EXPECT_EQ(solve(problem).reason, Reason::kLimitAtEnd);
+  GeodesicOptions options;
+  options.mod_angles = true;
+  const GeodesicReport report = find_geodesics(problem, options);
+  ASSERT_EQ(report.status, GeodesicStatus::kConverged) << report.message;
+  EXPECT_NEAR(report.geodesics[0].action, action, 1e-9 * action);
+  EXPECT_EQ(report.geodesics[0].windings.at(3), -1);
+}
+
 // What does not keep to limits says so, instead of an answer that is beyond them.
 TEST(LimitedGeodesics, AreNotLeftToWhatKnowsNoLimits) {
   const BoundaryValueProblem problem = parking("limit -0.3 < phi - theta < 0.3\n");
   EXPECT_THROW(SteeringFunction(problem.dynamics, {}), std::invalid_argument);
   EXPECT_THROW(WarmStart(problem, {1, 2, 3, 4}), std::invalid_argument);
-  Geodesic start;
-  start.p0 = {1, 2, 3, 4};
-  EXPECT_THROW(continue_geodesic(moving_target(problem, {0, 2, 0, 0}), start),
-               std::invalid_argument);
 }
 
 // The other kinds: a Lagrangian with a wall at the point that it would pass, and one on a manifold.

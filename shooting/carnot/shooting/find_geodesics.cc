@@ -269,12 +269,19 @@ GeodesicReport find_with_limits(const BoundaryValueProblem& asked, const Geodesi
   const Deadline deadline(options.time_limit);
   const auto began = std::chrono::steady_clock::now();
   GeodesicReport report;
-  report.message = beyond_limit_at_end(asked);
-  if (!report.message.empty()) {
+  std::vector<Image> images{{asked.to, {}}};
+  if (options.mod_angles) images = images_of_target(asked, options.max_length);
+  BoundaryValueProblem problem = asked;
+  std::erase_if(images, [&](const Image& image) {
+    problem.to = image.to;
+    return !beyond_limit_at_end(problem).empty();
+  });
+  if (images.empty()) {
+    report.message = beyond_limit_at_end(asked);
     report.reason = Reason::kLimitAtEnd;
     return report;
   }
-  BoundaryValueProblem problem = asked;
+  problem = asked;
   problem.limits.clear();
   // A few starts tell whether the least action is beyond a limit. Only where it is not must it be
   // known for sure: then it is the answer.
@@ -290,8 +297,6 @@ GeodesicReport find_with_limits(const BoundaryValueProblem& asked, const Geodesi
     if (deadline.left() > 0) report = find_without_limits(problem, all_starts);
   }
   if (report.status == GeodesicStatus::kInterrupted) return report;
-  std::vector<Image> images{{asked.to, {}}};
-  if (options.mod_angles) images = images_of_target(asked, options.max_length);
   // The nearest images, and all that an extremal without limits was found for.
   const auto is_known = [&](const Image& image) {
     return std::any_of(report.geodesics.begin(), report.geodesics.end(), [&](const Geodesic& g) {
