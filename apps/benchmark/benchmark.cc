@@ -1,6 +1,6 @@
 // carnot benchmark: speed against error on three trajectories whose ends are known to many digits;
-// with --boundary-value, solvers of boundary-value problems from blind starts; with --energy, H in
-// long runs.
+// with --boundary-value, solvers of boundary-value problems from blind starts; with --limits,
+// geodesics that keep to limits; with --energy, H in long runs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +14,7 @@
 #include "benchmark/benchmark_boundary_report.h"
 #include "benchmark/benchmark_cache.h"
 #include "benchmark/benchmark_energy_report.h"
+#include "benchmark/benchmark_limits_report.h"
 #include "benchmark/benchmark_report.h"
 #include "benchmark/benchmark_rows.h"
 #include "carnot/language/nearest.h"
@@ -40,6 +41,7 @@ std::vector<Contestant> peer_contestants(const BenchmarkProblem&, const Benchmar
   return {};
 }
 std::vector<BoundarySolver> boundary_peers() { return {}; }
+DirectSolver limits_peer() { return {}; }
 #endif
 
 constexpr const char* kFooter = R"(
@@ -63,6 +65,10 @@ independent integration. With --peers also ipopt on the direct midpoint transcri
 and gsl-hybridsj on single shooting. Then, over 1, 2, 4, ... 64 starts, the share of --targets random
 targets that are at the least action: --plot draws that. Takes some minutes.
 
+With --limits: a wheel, a hinge and a heading that turn so far and no further, and discs in the way.
+With --peers ipopt keeps to the same limits on the direct midpoint transcription: from carnot's path
+on 1024, 2048 and 4096 intervals, whose actions are extrapolated, and from 16 blind starts on 64.
+
 With --energy: the largest |H - H0| on the vehicle over T = 1000 against the CPU time of the run, by
 Gauss methods with steps around 0.2, whose stages are iterated to round-off or to changes of 1e-13,
 by dop853-adaptive and, with --peers, by gsl-rk8pd and odeint-rkf78; and how the round-off in H
@@ -76,6 +82,7 @@ Examples
   carnot benchmark vehicle --json
   carnot benchmark --plot speed.png --output speed.md
   carnot benchmark --boundary-value --starts 32 --output solvers.md
+  carnot benchmark --limits
   carnot benchmark --energy --steps 10000000 --plot energy.png
 
 Exit status: 0 success, 1 a file or reference did not come about, 2 bad input, 130 interrupted.)";
@@ -88,6 +95,7 @@ struct Options {
   bool peers = false;
   bool quick = false;
   bool boundary_value = false;
+  bool limits = false;
   bool energy = false;
   std::string steps;
   std::string starts;
@@ -192,19 +200,24 @@ void check_absent(const char* flag,
 }
 
 void check_options(const Options& options) {
-  const bool several = options.boundary_value && options.energy;
-  if (several) refuse("--energy", "", "given besides --boundary-value", "one of the two");
-  if ((options.boundary_value || options.energy) && !options.scenes.empty()) {
-    refuse("SCENE",
-           options.scenes[0],
-           options.energy ? "given besides --energy" : "given besides --boundary-value",
-           "no SCENE");
+  std::vector<std::string> kinds;
+  if (options.boundary_value) kinds.emplace_back("--boundary-value");
+  if (options.limits) kinds.emplace_back("--limits");
+  if (options.energy) kinds.emplace_back("--energy");
+  if (kinds.size() > 1) refuse(kinds[1], "", "given besides " + kinds[0], "one of the two");
+  if (!kinds.empty() && !options.scenes.empty()) {
+    refuse("SCENE", options.scenes[0], "given besides " + kinds[0], "no SCENE");
   }
   if (!options.energy) check_absent("--energy", {{"--steps", options.steps}});
   if (!options.boundary_value) {
-    check_absent(
-        "--boundary-value",
-        {{"--starts", options.starts}, {"--targets", options.targets}, {"--seed", options.seed}});
+    check_absent("--boundary-value",
+                 {{"--starts", options.starts}, {"--targets", options.targets}});
+  }
+  if (!options.boundary_value && !options.limits) {
+    check_absent("--boundary-value or --limits", {{"--seed", options.seed}});
+  }
+  if (options.limits && !options.destination.plot.empty()) {
+    refuse("--plot", options.destination.plot, "given besides --limits", "--output");
   }
   if (!options.boundary_value && !options.energy) {
     check_absent("--boundary-value or --energy", {{"--threads", options.threads}});
@@ -257,6 +270,26 @@ int run_boundary(const Options& options, const std::vector<std::string>& argumen
   result.text = [&] { return boundary_text(measured); };
   result.draw = [&](const std::string& file) { return draw_boundary(file, measured); };
   result.csv = [&] { return boundary_markdown(measured, arguments); };
+  return deliver(result, options.destination);
+}
+
+int run_limits(const Options& options, const std::vector<std::string>& arguments) {
+  const Stopwatch watch;
+  LimitsOptions checked;
+  checked.quick = options.quick;
+  if (!options.seed.empty()) checked.seed = parse_seed("--seed", options.seed);
+  std::optional<std::vector<LimitsRow>> found;
+  {
+    ProgressBar bar("%", 100, options.destination.quiet);
+    const auto peer = options.peers ? std::optional(limits_peer()) : std::nullopt;
+    found = run_limits_benchmark(checked, peer, bar.callback());
+  }
+  Result result = result_of(arguments, found ? "" : "stopped");
+  const std::vector<LimitsRow> measured = found.value_or(std::vector<LimitsRow>{});
+  add_limits_json(measured, result.json);
+  result.json["elapsed_seconds"] = watch.seconds();
+  result.text = [&] { return limits_text(measured); };
+  result.csv = [&] { return limits_markdown(measured, arguments); };
   return deliver(result, options.destination);
 }
 
@@ -322,6 +355,7 @@ int run_trajectories(const Options& options, const std::vector<std::string>& arg
 int run_benchmark(const Options& options, const std::vector<std::string>& arguments) {
   check_options(options);
   if (options.boundary_value) return run_boundary(options, arguments);
+  if (options.limits) return run_limits(options, arguments);
   if (options.energy) return run_energy(options, arguments);
   return run_trajectories(options, arguments);
 }
@@ -339,6 +373,7 @@ void add_benchmark(CLI::App& app, Invocation& invocation) {
   benchmark.add_flag("--boundary-value",
                      options->boundary_value,
                      "compare solvers of boundary-value problems instead");
+  benchmark.add_flag("--limits", options->limits, "geodesics that keep to limits instead");
   benchmark.add_flag("--energy", options->energy, "measure H in long runs instead");
   const auto add = [&](const char* name, std::string& value, const char* help) {
     benchmark.add_option(name, value, help)->type_name("N");

@@ -35,6 +35,18 @@ const char* name_of(Label label) {
   return "unknown";
 }
 
+const char* name_of(Verification verification) {
+  switch (verification) {
+    case Verification::kSingle:
+      return "single";
+    case Verification::kKnots:
+      return "knots";
+    case Verification::kGrid:
+      return "grid";
+  }
+  return "";
+}
+
 Json problem_json(const std::vector<std::string>& arguments, const Run& run, const Ends& ends) {
   Json json = result_head(arguments);
   json["scene"] = run.entry->info.name;
@@ -53,7 +65,7 @@ void add_extremal(const Geodesic& geodesic, const Ends& ends, Json& json) {
   json["lambda0"] = geodesic.lambda0;
   json["action"] = geodesic.action;
   json["length"] = or_null(geodesic.length);
-  json["verification"] = single ? "single" : knots ? "knots" : "grid";
+  json["verification"] = name_of(geodesic.verification);
   json["endpoint_error"] = single ? Json(geodesic.endpoint_error) : Json(nullptr);
   json["knot_defect"] = knots ? Json(geodesic.knot_defect) : Json(nullptr);
   if (!single && !knots) json["grid_error"] = geodesic.grid_error;
@@ -61,6 +73,12 @@ void add_extremal(const Geodesic& geodesic, const Ends& ends, Json& json) {
   json["from_found"] = geodesic.from;
   json["to_found"] = geodesic.to;
   json["transversality_error"] = geodesic.transversality_error;
+}
+
+void add_limits(const Geodesic& geodesic, const Ends& ends, Json& json) {
+  if (ends.limits.empty()) return;
+  json["limits"] = limits_json(geodesic);
+  json["limit_violation"] = geodesic.limit_violation;
 }
 
 Json geodesic_json(const Geodesic& geodesic, const Ends& ends, std::size_t rank) {
@@ -77,10 +95,7 @@ Json geodesic_json(const Geodesic& geodesic, const Ends& ends, std::size_t rank)
   json["hits"] = geodesic.hits;
   if (!geodesic.windings.empty()) json["windings"] = geodesic.windings;
   for (const auto& [name, value] : geodesic.extremes) json[name] = value;
-  if (!ends.limits.empty()) {
-    json["limits"] = limits_json(geodesic);
-    json["limit_violation"] = geodesic.limit_violation;
-  }
+  add_limits(geodesic, ends, json);
   return json;
 }
 

@@ -10,11 +10,15 @@
 
 namespace carnot::apps {
 
-// "locally-minimal" and so on.
+// "locally-minimal" and so on; "single", "knots" or "grid".
 const char* name_of(Label label);
+const char* name_of(Verification verification);
 
 // How the JSON of such a subcommand begins: up to "method".
 Json problem_json(const std::vector<std::string>& arguments, const Run& run, const Ends& ends);
+
+// Adds "limits" and "limit_violation" where there are limits.
+void add_limits(const Geodesic& geodesic, const Ends& ends, Json& json);
 
 // Adds "p0" to "knot_defect" and, where ends are free, what was found there.
 void add_extremal(const Geodesic& geodesic, const Ends& ends, Json& json);

@@ -109,6 +109,7 @@ TEST(BoundaryBenchmark, RefusesBadInput) {
       {{"benchmark", "--boundary-value", "--starts", "0"}, "--starts '0'"},
       {{"benchmark", "--boundary-value", "--targets", "x"}, "--targets 'x'"},
       {{"benchmark", "--boundary-value", "--output", "x.csv"}, "--output"},
+      {{"benchmark", "--boundary-value", "--limits"}, "--limits"},
       {{"benchmark", "--seed", "3"}, "--boundary-value"}};
   for (const auto& [arguments, message] : cases) expect_refused(arguments, HasSubstr(message));
 }

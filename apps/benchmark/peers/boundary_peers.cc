@@ -14,8 +14,9 @@ BoundaryTrial run_ipopt(const BoundaryValueProblem& problem, std::uint64_t seed,
   const double began = thread_seconds();
   internal::Start start = internal::make_start(problem, seed, i + 1, kIntervals);
   BoundaryTrial trial;
-  trial.solved =
-      solve_with_ipopt(problem.dynamics, problem.time / kIntervals, start.path.q, trial.action);
+  const std::optional<double> action = solve_with_ipopt(problem, start.path.q);
+  trial.solved = action.has_value();
+  if (action) trial.action = *action;
   trial.seconds = thread_seconds() - began;
   return trial;
 }
@@ -45,5 +46,7 @@ std::vector<BoundarySolver> boundary_peers() {
   return {{"ipopt", BoundaryStart::kPath, true, false, false, run_ipopt},
           {"gsl-hybridsj", BoundaryStart::kMomentum, true, true, true, run_gsl}};
 }
+
+DirectSolver limits_peer() { return {"ipopt", solve_with_ipopt}; }
 
 }  // namespace carnot::apps

@@ -1,19 +1,24 @@
-// Other people's solvers of boundary-value problems for `carnot benchmark --boundary-value`.
+// Other people's solvers of boundary-value problems for `carnot benchmark --boundary-value` and
+// `--limits`.
 #pragma once
 
 #include <vector>
 
 #include "benchmark/benchmark_boundary.h"
+#include "benchmark/benchmark_limits.h"
 
 namespace carnot::apps {
 
 // ipopt and gsl-hybridsj.
 std::vector<BoundarySolver> boundary_peers();
 
+// ipopt.
+DirectSolver limits_peer();
+
 // Ipopt on the direct midpoint transcription: q holds the nodes, (intervals + 1) x n, of a path
-// whose ends stay. True where Ipopt says that it has solved it; `action` is that of the
-// transcription.
-bool solve_with_ipopt(const Dynamics& dynamics, double h, std::vector<double>& q, double& action);
+// whose ends stay and whose other nodes keep to the limits of the problem. The action of the
+// transcription where Ipopt says that it has solved it.
+std::optional<double> solve_with_ipopt(const BoundaryValueProblem& problem, std::vector<double>& q);
 
 // Powell's hybrid method of the GNU Scientific Library, as in MINPACK, on q(T; p0) = to with the
 // Jacobian of the tangent flow. True where it says that it has converged.

@@ -3,7 +3,7 @@
 // Minimise sum_i h L(qm_i, v_i) subject to h G(qm_i) v_i = 0. All that Ipopt asks for is in the
 // discrete Lagrangian F(x, lambda) = h (L - lambda.G v) of Dynamics: F_lambda = -h G v are the
 // constraints, F_lambda,q their Jacobian, and with weight s of the objective and multipliers mu the
-// Hessian is s F_qq(0) + (F_qq(mu) - F_qq(0)).
+// Hessian is s F_qq(0) + (F_qq(mu) - F_qq(0)). Limits are rows of their own, at each inner node.
 #include <algorithm>
 #include <cmath>
 #include <coin/IpIpoptApplication.hpp>
@@ -20,13 +20,15 @@ using Ipopt::Number;
 
 class Transcription : public Ipopt::TNLP {
  public:
-  Transcription(const Dynamics& dynamics, double h, std::vector<double>& q, double& action)
-      : dynamics_(dynamics),
-        h_(h),
-        n_(dynamics.dof),
-        k_(dynamics.transcribed),
+  Transcription(const BoundaryValueProblem& problem, std::vector<double>& q, double& action)
+      : dynamics_(problem.dynamics),
+        limits_(problem.limits),
+        n_(dynamics_.dof),
+        k_(dynamics_.transcribed),
         m_(2 * n_ + k_),
         intervals_(static_cast<int>(q.size()) / n_ - 1),
+        limited_(static_cast<int>(limits_.size())),
+        h_(problem.time / intervals_),
         q_(q),
         action_(action),
         x_(m_),
@@ -37,8 +39,9 @@ class Transcription : public Ipopt::TNLP {
   bool get_nlp_info(
       Index& n, Index& m, Index& jacobian, Index& hessian, IndexStyleEnum& style) override {
     n = (intervals_ - 1) * n_;
-    m = intervals_ * k_;
-    jacobian = hessian = 0;
+    m = intervals_ * k_ + (intervals_ - 1) * limited_;
+    jacobian = (intervals_ - 1) * limited_ * n_;
+    hessian = limited_ > 0 ? (intervals_ - 1) * n_ * (n_ + 1) / 2 : 0;
     for (int i = 0; i < intervals_; ++i) {
       each_jacobian(i, [&](int, int, int, int) { ++jacobian; });
       each_hessian(i, [&](int, int, int, int) { ++hessian; });
@@ -54,6 +57,11 @@ class Transcription : public Ipopt::TNLP {
     std::fill_n(upper, n, kNone);
     std::fill_n(low, m, 0.0);
     std::fill_n(high, m, 0.0);
+    for (int row = intervals_ * k_; row < m; ++row) {
+      const Limit& limit = limits_[(row - intervals_ * k_) % limited_];
+      low[row] = std::max(limit.lower, -kNone);
+      high[row] = std::min(limit.upper, kNone);
+    }
     return true;
   }
 
@@ -103,6 +111,11 @@ class Transcription : public Ipopt::TNLP {
       evaluate(i, x, nullptr, {});
       std::copy(gradient_.begin() + 2 * n_, gradient_.end(), g + i * k_);
     }
+    for (int node = 1; node < intervals_; ++node) {
+      for (int l = 0; l < limited_; ++l) {
+        g[limit_row(node, l)] = limits_[l].value(x + (node - 1) * n_, nullptr, nullptr);
+      }
+    }
     return true;
   }
 
@@ -126,6 +139,15 @@ class Transcription : public Ipopt::TNLP {
         }
         ++at;
       });
+    }
+    for (int node = 1; node < intervals_; ++node) {
+      for (int l = 0; l < limited_; ++l, at += n_) {
+        if (values != nullptr) limits_[l].value(x + (node - 1) * n_, values + at, nullptr);
+        for (int j = 0; j < n_ && values == nullptr; ++j) {
+          rows[at + j] = limit_row(node, l);
+          columns[at + j] = (node - 1) * n_ + j;
+        }
+      }
     }
     return true;
   }
@@ -158,6 +180,19 @@ class Transcription : public Ipopt::TNLP {
         ++at;
       });
     }
+    for (int node = 1; node < intervals_ && limited_ > 0; ++node) {
+      if (values != nullptr) set_bending(node, x, lambda);
+      for (int a = 0; a < n_; ++a) {
+        for (int b = 0; b <= a; ++b, ++at) {
+          if (values != nullptr) {
+            values[at] = bending_[a * n_ + b];
+          } else {
+            rows[at] = (node - 1) * n_ + a;
+            columns[at] = (node - 1) * n_ + b;
+          }
+        }
+      }
+    }
     return true;
   }
 
@@ -186,6 +221,20 @@ class Transcription : public Ipopt::TNLP {
     dynamics_.discrete_lagrangian(h_, x_, gradient_, hessian);
   }
 
+  [[nodiscard]] int limit_row(int node, int limit) const {
+    return intervals_ * k_ + (node - 1) * limited_ + limit;
+  }
+
+  // The second derivatives of the limits at a node, each times its multiplier.
+  void set_bending(int node, const Number* x, const Number* lambda) {
+    bending_.assign(n_ * n_, 0.0);
+    std::vector<double> gradient(n_), hessian(n_ * n_);
+    for (int l = 0; l < limited_; ++l) {
+      limits_[l].value(x + (node - 1) * n_, gradient.data(), hessian.data());
+      for (int e = 0; e < n_ * n_; ++e) bending_[e] += lambda[limit_row(node, l)] * hessian[e];
+    }
+  }
+
   // Index of coordinate a of interval i, of both its ends, among the unknowns; -1 at a fixed end.
   [[nodiscard]] int unknown(int i, int a) const {
     const int index = (i - 1) * n_ + a;
@@ -212,30 +261,37 @@ class Transcription : public Ipopt::TNLP {
   }
 
   const Dynamics& dynamics_;
-  double h_;
+  const std::vector<Limit>& limits_;
   int n_;
   int k_;
   int m_;
   int intervals_;
+  int limited_;
+  double h_;
   std::vector<double>& q_;
   double& action_;
   std::vector<double> x_;
   std::vector<double> gradient_;
   std::vector<double> hessian_;
   std::vector<double> weighted_;
+  std::vector<double> bending_;
 };
 
 }  // namespace
 
-bool solve_with_ipopt(const Dynamics& dynamics, double h, std::vector<double>& q, double& action) {
-  const Ipopt::SmartPtr<Ipopt::TNLP> problem = new Transcription(dynamics, h, q, action);
+std::optional<double> solve_with_ipopt(const BoundaryValueProblem& problem,
+                                       std::vector<double>& q) {
+  double action = 0;
+  const Ipopt::SmartPtr<Ipopt::TNLP> transcription = new Transcription(problem, q, action);
   const Ipopt::SmartPtr<Ipopt::IpoptApplication> ipopt = new Ipopt::IpoptApplication(false);
   ipopt->Options()->SetIntegerValue("print_level", 0);
   ipopt->Options()->SetStringValue("sb", "yes");
   ipopt->Options()->SetIntegerValue("max_iter", 500);
   ipopt->Options()->SetNumericValue("tol", 1e-10);
-  if (ipopt->Initialize() != Ipopt::Solve_Succeeded) return false;
-  return ipopt->OptimizeTNLP(problem) == Ipopt::Solve_Succeeded;
+  ipopt->Options()->SetNumericValue("bound_relax_factor", 0);  // limits are kept to, not nearly
+  if (ipopt->Initialize() != Ipopt::Solve_Succeeded) return std::nullopt;
+  if (ipopt->OptimizeTNLP(transcription) != Ipopt::Solve_Succeeded) return std::nullopt;
+  return action;
 }
 
 }  // namespace carnot::apps
