@@ -3,19 +3,89 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "carnot/plots/script.h"
 #include "catalogue/scene_choice.h"
+#include "run/search_options.h"
 #include "text/numbers.h"
 #include "text/text_table.h"
 
 namespace carnot::apps {
 namespace {
 
-std::string accepted_along(const SceneEntry& entry) {
+constexpr std::string_view kLimit = "limit:";
+constexpr std::string_view kDisc = "disc:";
+
+std::string accepted_along(const SceneEntry& entry, const Ends& ends, const AskedLimits& asked) {
   std::string text = "to=Q1, from=Q0, time=T";
+  for (const Limit& limit : ends.limits) text += fmt::format(", {}{}=BOUND", kLimit, limit.name);
+  for (std::size_t k = 1; k <= asked.discs.size(); ++k)
+    text += fmt::format(", {}{}=X,Y,R", kDisc, k);
   if (!entry.parameters.empty()) text += " or " + accepted_parameters(entry);
   return text;
+}
+
+// One number is the bound of a limit that has one, and where there are two opposite ones their
+// size. A:B are both.
+void parse_bounds(const std::string& option,
+                  const std::string& value,
+                  const Limit& limit,
+                  Along& along) {
+  const bool lower = std::isfinite(limit.lower);
+  const bool upper = std::isfinite(limit.upper);
+  const std::vector<std::string> parts = split(value, ':');
+  if (parts.size() == 2 && lower && upper) {
+    along.start = {limit.lower, limit.upper};
+    along.end = {parse_real(option, parts[0]), parse_real(option, parts[1])};
+    if (along.end[0] >= along.end[1]) refuse(option, value, "is empty", "A:B with A < B");
+    return;
+  }
+  if (parts.size() != 1 || (lower && upper && limit.lower != -limit.upper)) {
+    refuse(option, value, "does not say both bounds", lower && upper ? "A:B" : "a number");
+  }
+  along.start = {upper ? limit.upper : limit.lower};
+  along.end = {lower && upper ? parse_positive(option, value) : parse_real(option, value)};
+}
+
+void move_bounds(const std::vector<double>& value, Limit& limit) {
+  const bool lower = std::isfinite(limit.lower);
+  const bool upper = std::isfinite(limit.upper);
+  if (upper) limit.upper = value.back();
+  if (lower) limit.lower = value.size() == 1 && upper ? -value.front() : value.front();
+}
+
+Along parse_limit(const std::string& name,
+                  const std::string& text,
+                  const std::string& value,
+                  const Ends& ends,
+                  const std::string& accepted) {
+  Along along;
+  along.kind = Along::Kind::kLimit;
+  const auto found = std::find_if(ends.limits.begin(), ends.limits.end(), [&](const Limit& limit) {
+    return limit.name == name.substr(kLimit.size());
+  });
+  if (found == ends.limits.end()) refuse("--along", text, "no such limit", accepted);
+  along.index = found - ends.limits.begin();
+  parse_bounds("--along " + name, value, *found, along);
+  return along;
+}
+
+Along parse_moved_disc(const std::string& name,
+                       const std::string& text,
+                       const std::string& value,
+                       const AskedLimits& asked,
+                       const std::string& accepted) {
+  Along along;
+  along.kind = Along::Kind::kDisc;
+  const std::string number = name.substr(kDisc.size());
+  while (along.index < asked.discs.size() && std::to_string(along.index + 1) != number) {
+    ++along.index;
+  }
+  if (along.index == asked.discs.size()) refuse("--along", text, "no such --disc", accepted);
+  along.start = parse_disc("--disc", asked.discs[along.index]);
+  along.end = parse_disc("--along " + name, value);
+  return along;
 }
 
 // The coordinates that change; all there is where one number does.
@@ -35,8 +105,11 @@ std::vector<double> Along::value(double s) const {
   return value;
 }
 
-Along parse_along(const std::string& text, const Run& run, const Ends& ends) {
-  const std::string accepted = accepted_along(*run.entry);
+Along parse_along(const std::string& text,
+                  const Run& run,
+                  const Ends& ends,
+                  const AskedLimits& asked) {
+  const std::string accepted = accepted_along(*run.entry, ends, asked);
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) refuse("--along", text, "there is no '='", accepted);
   Along along;
@@ -56,18 +129,26 @@ Along parse_along(const std::string& text, const Run& run, const Ends& ends) {
     along.kind = Along::Kind::kTime;
     along.start = {ends.time};
     along.end = {parse_positive(option, value)};
+  } else if (along.name.starts_with(kLimit)) {
+    along = parse_limit(along.name, text, value, ends, accepted);
+  } else if (along.name.starts_with(kDisc)) {
+    along = parse_moved_disc(along.name, text, value, asked, accepted);
   } else {
     along.kind = Along::Kind::kParameter;
     along.end = {parse_parameter(*run.entry, "--along", text, accepted).second};
     along.start = {run.parameters.at(along.name)};
   }
+  along.name = text.substr(0, equals);
   if (along.start == along.end) {
     refuse("--along", text, "is where it starts", "another value to end with");
   }
   return along;
 }
 
-ProblemLine line_of(const Along& along, const Run& run, const Ends& ends) {
+ProblemLine line_of(const Along& along,
+                    const Run& run,
+                    const Ends& ends,
+                    const AskedLimits& asked) {
   const BoundaryValueProblem problem = problem_between(run.dynamics, ends);
   switch (along.kind) {
     case Along::Kind::kTarget:
@@ -76,14 +157,30 @@ ProblemLine line_of(const Along& along, const Run& run, const Ends& ends) {
       return moving_start(problem, along.end);
     case Along::Kind::kTime:
       return moving_time(problem, along.end.front());
+    case Along::Kind::kLimit:
+      return {[along, problem](double s) {
+        BoundaryValueProblem changed = problem;
+        move_bounds(along.value(s), changed.limits[along.index]);
+        return changed;
+      }};
+    case Along::Kind::kDisc:
+      return {[along, problem, &run, asked](double s) {
+        AskedLimits moved = asked;
+        moved.discs[along.index] = fmt::format("{:.17g}", fmt::join(along.value(s), ","));
+        BoundaryValueProblem changed = problem;
+        changed.limits = limits_of(moved, run);
+        return changed;
+      }};
     case Along::Kind::kParameter:
       break;
   }
-  return {[along, problem, &run](double s) {
+  return {[along, problem, &run, asked](double s) {
     ParameterValues values = run.parameters;
     values[along.name] = along.value(s).front();
     BoundaryValueProblem changed = problem;
-    changed.dynamics = run.entry->make(values, run.method.name);
+    changed.dynamics = run.make(values);
+    changed.limits = changed.dynamics.info.limits;
+    if (asked.any()) changed.limits = choose_limits(*run.entry, values, asked);
     return changed;
   }};
 }
@@ -101,6 +198,13 @@ std::string axis_label(const Along& along, const Run& run) {
     const auto found = std::find_if(
         parameters.begin(), parameters.end(), [&](const auto& p) { return p.name == along.name; });
     return plots::with_unit(plots::symbol(along.name), found->unit);
+  }
+  if (along.kind == Along::Kind::kLimit && along.start.size() == 1) {
+    return plots::escaped("bound of " + along.name.substr(kLimit.size()));
+  }
+  if (along.kind == Along::Kind::kLimit || along.kind == Along::Kind::kDisc) {
+    return plots::escaped(fmt::format(
+        "s, {} going from {} to {}", along.name, text_vector(along.start), text_vector(along.end)));
   }
   const char* end = along.kind == Along::Kind::kTarget ? "target" : "start";
   if (indices.size() == 1) {

@@ -23,11 +23,13 @@ struct ContinueCall {
   std::string time_limit;
   bool branches = false;
   bool no_labels = false;
+  AskedLimits asked;
 };
 
 struct ContinueRequest {
   Run run;
   Ends ends;
+  AskedLimits asked;
   Along along;
   int rank = 1;
   std::vector<double> guess;                                    // empty: search

@@ -34,12 +34,21 @@ const char* status_name(ContinuationStatus status) {
   return "";
 }
 
-bool is_vector(const Along& along) {
+bool is_end(const Along& along) {
   return along.kind == Along::Kind::kTarget || along.kind == Along::Kind::kStart;
 }
 
+bool is_vector(const Along& along) { return is_end(along) || along.start.size() > 1; }
+
 Json value_json(const Along& along, const std::vector<double>& value) {
   return is_vector(along) ? Json(value) : Json(value.front());
+}
+
+// What the numbers of a limit or a disc are called, besides the name of what changes.
+std::vector<std::string> parts_of(const Along& along) {
+  if (along.start.size() == 1) return {""};
+  if (along.kind == Along::Kind::kLimit) return {"_lower", "_upper"};
+  return {"_x", "_y", "_radius"};
 }
 
 Json point_json(const ContinueRequest& request, const ContinuationPoint& point) {
@@ -52,7 +61,21 @@ Json point_json(const ContinueRequest& request, const ContinuationPoint& point) 
   add_extremal(geodesic, request.ends, json);
   json["morse_index"] = or_null(geodesic.morse_index);
   json["label"] = name_of(geodesic.label);
+  add_limits(geodesic, request.ends, json);
   return json;
+}
+
+Json changes_json(const Along& along, const std::vector<ContactChange>& changes) {
+  Json list = Json::array();
+  for (const ContactChange& change : changes) {
+    list.push_back({{"s", change.s},
+                    {"s_error", change.error},
+                    {"value", value_json(along, along.value(change.s))},
+                    {"before", change.before},
+                    {"after", change.after},
+                    {"action", change.action}});
+  }
+  return list;
 }
 
 Json special_json(const Along& along, const std::vector<SpecialPoint>& points) {
@@ -87,6 +110,9 @@ Json report_json(const ContinueRequest& request,
   json["folds"] = special_json(along, report.folds);
   json["branch_points"] = special_json(along, report.branch_points);
   json["branch_status"] = std::move(branches);
+  if (!request.ends.limits.empty()) {
+    json["contact_changes"] = changes_json(along, report.contact_changes);
+  }
   json["elapsed_seconds"] = report.elapsed_seconds;
   return json;
 }
@@ -95,15 +121,22 @@ std::string csv_number(const std::optional<double>& value) {
   return value ? fmt::format("{:.17g}", *value) : "";
 }
 
+// A header may hold the formula of a limit.
+std::string csv_field(const std::string& text) {
+  return text.find(',') == std::string::npos ? text : '"' + text + '"';
+}
+
 std::string report_csv(const ContinueRequest& request, const ContinuationReport& report) {
   const auto& coordinates = request.run.entry->info.configuration;
   std::string out = "branch,s";
-  if (is_vector(request.along)) {
+  if (is_end(request.along)) {
     for (const Coordinate& coordinate : coordinates) {
       out += fmt::format(",{}_{}", request.along.name, coordinate.name);
     }
   } else {
-    out += "," + request.along.name;
+    for (const std::string& part : parts_of(request.along)) {
+      out += "," + csv_field(request.along.name + part);
+    }
   }
   out += ",action,length,endpoint_error,knot_defect,morse_index,label";
   for (const Coordinate& coordinate : coordinates) out += ",p_" + coordinate.name;
@@ -167,6 +200,33 @@ std::string special_text(const char* name,
   return text;
 }
 
+// "steering (3 times), hinge"
+std::string contacts_text(const std::vector<std::string>& contacts) {
+  if (contacts.empty()) return "no limit";
+  std::vector<std::string> parts;
+  for (auto first = contacts.begin(); first != contacts.end();) {
+    const auto last =
+        std::find_if(first, contacts.end(), [&](const auto& name) { return name != *first; });
+    const auto times = last - first;
+    parts.push_back(times > 1 ? fmt::format("{} ({} times)", *first, times) : *first);
+    first = last;
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string changes_text(const Along& along, const std::vector<ContactChange>& changes) {
+  std::string text;
+  for (const ContactChange& change : changes) {
+    text += fmt::format("at {} = {} it goes over from {} to {}, action {}\n",
+                        along.name,
+                        value_text(along, change.s, 6),
+                        contacts_text(change.before),
+                        contacts_text(change.after),
+                        text_number(change.action, 10));
+  }
+  return text;
+}
+
 std::string report_text(const ContinueRequest& request, const ContinuationReport& report) {
   const Along& along = request.along;
   const Run& run = request.run;
@@ -180,6 +240,7 @@ std::string report_text(const ContinueRequest& request, const ContinuationReport
   if (!report.points.empty()) text += '\n' + table(along, report) + '\n';
   text += special_text("fold", along, report.folds);
   text += special_text("branch point", along, report.branch_points);
+  text += changes_text(along, report.contact_changes);
   for (std::size_t i = 0; i < report.branch_ends.size(); ++i) {
     text += fmt::format("branch {}: {}\n", i + 1, status_name(report.branch_ends[i]));
   }

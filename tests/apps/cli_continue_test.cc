@@ -11,7 +11,9 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::IsSupersetOf;
 using ::testing::StartsWith;
+using ::testing::UnorderedElementsAre;
 
 Words unicycle(const Words& more) {
   return with({"continue", "unicycle", "--from", "0,0,0", "--to", "1,1,0"}, more);
@@ -181,6 +183,64 @@ TEST(ContinueCommand, NumericalFailureIsOneLine) {
   EXPECT_THAT(rank.err, HasSubstr("--rank"));
 }
 
+// Sideways parking while the wheel turns less and less.
+Words tightening(const Words& more) {
+  return with({"continue",
+               "vehicle",
+               "--from",
+               "0,0,0,0",
+               "--to",
+               "0,1,0,0",
+               "--limit",
+               "phi-theta in -0.5:0.5",
+               "--max-points",
+               "100"},
+              more);
+}
+
+TEST(ContinueCommand, MovesLimits) {
+  const Sandbox sandbox;
+  const Outcome outcome = sandbox.run(tightening(
+      {"--along", "limit:phi-theta=0.44", "--json", "--plot", "l.png", "--output", "l.csv"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = outcome.json();
+  EXPECT_EQ(json["along"].dump(), R"({"name":"limit:phi-theta","start":0.5,"end":0.44})");
+  EXPECT_THAT(keys(json["points"][0]), IsSupersetOf({"limits", "limit_violation"}));
+  ASSERT_EQ(json["contact_changes"].size(), 1);
+  const auto& change = json["contact_changes"][0];
+  EXPECT_THAT(keys(change), ElementsAre("s", "s_error", "value", "before", "after", "action"));
+  EXPECT_EQ(change["before"].dump(), "[]");
+  EXPECT_EQ(change["after"].dump(), R"(["phi-theta"])");
+  EXPECT_NEAR(change["value"].get<double>(), 0.45727, 1e-4);
+  EXPECT_THAT(read_text(sandbox.directory() / "l.csv"), StartsWith("branch,s,limit:phi-theta,action"));
+  EXPECT_THAT(sandbox.files(), UnorderedElementsAre("l.csv", "l.png"));
+
+  const Outcome text = run(tightening({"--along", "limit:phi-theta=-0.5:0.45"}));
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("goes over from no limit to phi-theta"));
+}
+
+TEST(ContinueCommand, MovesDiscsAndKeepsToLimitsAlongParameters) {
+  const auto disc = run({"continue",
+                         "unicycle",
+                         "--from",
+                         "0,0,0",
+                         "--to",
+                         "2,0,0.3",
+                         "--disc",
+                         "1,-0.4,0.2",
+                         "--along",
+                         "disc:1=1,-0.2,0.3",
+                         "--json"})
+                        .json();
+  EXPECT_EQ(disc["status"], "reached");
+  EXPECT_EQ(disc["along"]["end"].dump(), "[1,-0.2,0.3]");
+  EXPECT_EQ(disc["contact_changes"].size(), 1);
+  const auto longer = run(tightening({"--along", "length=1.1", "--json"})).json();
+  EXPECT_EQ(longer["status"], "reached");
+  EXPECT_EQ(longer["points"].back()["limits"][0]["name"], "phi-theta");
+}
+
 TEST(ContinueCommand, BadInputIsOneLine) {
   const std::vector<std::pair<Words, std::string>> cases{
       {unicycle({}), "--along"},
@@ -195,6 +255,15 @@ TEST(ContinueCommand, BadInputIsOneLine) {
       {unicycle({"--along", "time=2", "--rank", "2", "--guess", "1,2,3"}), "--rank"},
       {unicycle({"--along", "time=2", "--guess", "1,2"}), "--guess"},
       {unicycle({"--along", "time=2", "--output", "a.txt"}), "--output"},
+      {unicycle({"--along", "limit:theta=0.2"}), "no such limit"},
+      {unicycle({"--along", "disc:1=0,1,1"}), "no such --disc"},
+      {tightening({"--along", "limit:phi-theta=0.5"}), "is where it starts"},
+      {tightening({"--along", "limit:phi-theta=-0.2"}), "--along limit:phi-theta"},
+      {tightening({"--along", "limit:phi-theta=0.3:0.2"}), "is empty"},
+      {tightening({"--along", "limit:theta=0.2"}),
+       "accepted: to=Q1, from=Q0, time=T, limit:phi-theta"},
+      {tightening({"--along", "disc:2=0,1,1"}), "no such --disc"},
+      {tightening({"--along", "time=2", "--branches"}), "--branches"},
       {{"continue", "unicycle", "--to", "1,0,0", "--along", "time=2"}, "--from"},
       {{"continue", "rod-skate", "--from", "0,0,1,0", "--to", "1,0,2,0", "--along", "time=2"},
        "holonomic"},

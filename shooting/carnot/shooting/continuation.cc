@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "carnot/shooting/continue/curve_tracer.h"
+#include "carnot/shooting/continue/limited_tracer.h"
 #include "carnot/shooting/problem/origin.h"
 
 namespace carnot {
@@ -90,17 +91,50 @@ void check_start(const BoundaryValueProblem& problem, const Geodesic& start) {
                                 std::to_string(problem.dynamics.dof));
   }
   const std::size_t samples = start.trajectory.t.size();
-  if (start.verification == Verification::kKnots && (samples < 2 || (samples - 1) % 64 != 0)) {
+  const bool sampled = start.verification != Verification::kSingle || !problem.limits.empty();
+  if (sampled && (samples < 2 || (samples - 1) % 64 != 0)) {
     throw std::invalid_argument("the extremal at the start has " + std::to_string(samples) +
                                 " samples, must have 64 k + 1");
-  }
-  if (!problem.limits.empty()) {
-    throw std::invalid_argument(
-        "continuation does not keep to limits: take them out of the problem");
   }
   if (problem.dynamics.forced > 0) {
     throw std::invalid_argument(
         "continuation is not offered with holonomic constraints that need RATTLE");
+  }
+}
+
+void follow_with_limits(const ProblemLine& line,
+                        const Geodesic& start,
+                        const ContinuationOptions& options,
+                        ContinuationReport& report) {
+  LimitedTracer tracer(line, options, report);
+  report.status = tracer.trace(start);
+  report.message = message_of(report);
+  if (report.status == ContinuationStatus::kNotConverged) {
+    report.message =
+        "the extremal at the start could not be solved for again: where it keeps to limits it must "
+        "be a minimum; try another one, or a larger tolerance";
+  } else if (report.status == ContinuationStatus::kStepTooSmall) {
+    report.message = "no step from s = " + std::to_string(report.points.back().s) +
+                     ", however small, leads to an extremal near the last one" +
+                     (tracer.trouble().empty() ? ": its branch may end there, or the limits close "
+                                                 "the way; search anew beyond it"
+                                               : ": " + tracer.trouble());
+  }
+}
+
+void follow_curves(const ProblemLine& asked,
+                   const Geodesic& start,
+                   const ContinuationOptions& options,
+                   ContinuationReport& report) {
+  const ProblemLine line{[&](double s) { return at_origin(asked.at(s)); }, asked.only_target};
+  const long steps = std::max(kLeastSteps, start.plan.count / 2);
+  CurveTracer tracer(line, options, steps, 0, report);
+  report.status = tracer.trace(starting_place(asked.at(0), line.at(0), start, steps));
+  report.message = message_of(report);
+  if (report.status != ContinuationStatus::kInterrupted &&
+      !follow_branches(line, options, steps, tracer.crossings(), report)) {
+    report.status = ContinuationStatus::kInterrupted;
+    report.message = message_of(report);
   }
 }
 
@@ -130,17 +164,8 @@ ContinuationReport continue_geodesic(const ProblemLine& asked,
   original.validate();
   asked.at(1).validate();
   check_start(original, start);
-  const ProblemLine line{[&](double s) { return at_origin(asked.at(s)); }, asked.only_target};
-  const long steps = std::max(kLeastSteps, start.plan.count / 2);
   ContinuationReport report;
-  CurveTracer tracer(line, options, steps, 0, report);
-  report.status = tracer.trace(starting_place(original, line.at(0), start, steps));
-  report.message = message_of(report);
-  if (report.status != ContinuationStatus::kInterrupted &&
-      !follow_branches(line, options, steps, tracer.crossings(), report)) {
-    report.status = ContinuationStatus::kInterrupted;
-    report.message = message_of(report);
-  }
+  (original.limits.empty() ? follow_curves : follow_with_limits)(asked, start, options, report);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - began;
   report.elapsed_seconds = elapsed.count();
   return report;

@@ -36,6 +36,15 @@ struct SpecialPoint {
   double action = 0;
 };
 
+// Where an extremal begins or ceases to keep to a limit.
+struct ContactChange {
+  double s = 0;
+  double error = 0;                 // of s
+  std::vector<std::string> before;  // the limits that it keeps to, arc by arc in the order of time
+  std::vector<std::string> after;
+  double action = 0;
+};
+
 enum class ContinuationStatus {
   kReached,   // s = 1
   kReturned,  // back at s = 0, after a fold
@@ -53,6 +62,7 @@ struct ContinuationReport {
   std::vector<ContinuationPoint> points;  // curve by curve, each in its order
   std::vector<SpecialPoint> folds;
   std::vector<SpecialPoint> branch_points;
+  std::vector<ContactChange> contact_changes;   // with limits
   std::vector<ContinuationStatus> branch_ends;  // how curve 1, 2, ... ended
   double elapsed_seconds = 0;
 

@@ -11,9 +11,15 @@
 #include "carnot/shooting/problem/ends.h"
 #include "carnot/shooting/shoot/bound_survey.h"
 #include "carnot/shooting/shoot/contacts.h"
+#include "carnot/shooting/shoot/multiple_shooting.h"
 #include "carnot/shooting/shoot/survey.h"
 
 namespace carnot::internal {
+namespace {
+
+constexpr long kFreeSteps = 32;  // of a flow without contact
+
+}  // namespace
 
 // On the grid of half the step.
 bool LimitedFinish::refine(Candidate& candidate, double last_mu) const {
@@ -52,30 +58,33 @@ void LimitedFinish::add_extremes(const std::vector<std::vector<double>>& q,
   }
 }
 
+std::optional<LimitedExtremal> LimitedFinish::without_contact(Knots knots) const {
+  ShootingOptions shooting;
+  shooting.steps = kFreeSteps;
+  if (!shoot(shared_.unlimited, shooting, knots).converged) return std::nullopt;
+  return by_flow(std::move(knots));
+}
+
 // Without any contact: an extremal of the problem without limits.
-std::optional<Geodesic> LimitedFinish::by_flow(const BoundExtremal& extremal) const {
-  constexpr long kSteps = 32;
+std::optional<LimitedExtremal> LimitedFinish::by_flow(Knots knots) const {
   constexpr int kDense = 2048;
-  const Piece& piece = extremal.pieces.front();
-  Knots knots{piece.segments, shared_.problem.dynamics.dof, piece.z};
-  knots.z.resize(knots.z.size() + 2 * knots.dof);
-  Outcome verified = verify(shared_.unlimited, std::move(knots), kSteps, options_.tolerance);
+  Outcome verified = verify(shared_.unlimited, std::move(knots), kFreeSteps, options_.tolerance);
   if (!verified.extremal) return std::nullopt;
   complete(shared_.unlimited, options_.samples, *verified.extremal);
   Geodesic geodesic = std::move(verified.extremal->geodesic);
   const Knots& found = verified.extremal->knots;
   shared_.report_limits(
       survey(shared_.unlimited, found, geodesic.plan.count, kDense + 1).trajectory.q, geodesic);
-  return shared_.keeps_to_limits(geodesic) ? std::optional(std::move(geodesic)) : std::nullopt;
+  if (!shared_.keeps_to_limits(geodesic)) return std::nullopt;
+  return LimitedExtremal{std::move(geodesic), std::nullopt};
 }
 
-std::optional<Geodesic> LimitedFinish::by_pieces(const BoundExtremal& extremal,
-                                                 const Candidate& candidate) const {
+std::optional<LimitedExtremal> LimitedFinish::with_contacts_of(const BoundExtremal& near) const {
   constexpr int kDense = 2048;
   constexpr long kMostSteps = 4096;
   constexpr double kPull = -1e-6;  // of the multiplier's unit: the wall pulls
   const int n = shared_.problem.dynamics.dof;
-  BoundExtremal solved = extremal;
+  BoundExtremal solved = near;
   std::vector<double> dense;
   for (int i = 0; i <= kDense; ++i) dense.push_back(shared_.problem.time * i / kDense);
   BoundSurvey measured;
@@ -127,7 +136,6 @@ std::optional<Geodesic> LimitedFinish::by_pieces(const BoundExtremal& extremal,
   geodesic.constraint_error = measured.summary.constraint_error;
   geodesic.energy_drift = measured.summary.energy_drift;
   geodesic.plan = StepPlan::equal(0, shared_.problem.time, steps);
-  if (candidate.minimum) geodesic.label = Label::kLocallyMinimal;
   add_extremes(measured.summary.trajectory.q, geodesic);
   if (options_.samples > 0) {
     geodesic.trajectory = survey_pieces(shared_.problem,
@@ -137,17 +145,25 @@ std::optional<Geodesic> LimitedFinish::by_pieces(const BoundExtremal& extremal,
                                         sample_times(geodesic.plan, options_.samples))
                               .summary.trajectory;
   }
-  return geodesic;
+  return LimitedExtremal{std::move(geodesic), std::move(solved)};
 }
 
-std::optional<Geodesic> LimitedFinish::joined(const Candidate& candidate) const {
+std::optional<LimitedExtremal> LimitedFinish::joined(const Candidate& candidate) const {
   for (const Contacts as :
        {Contacts::kByOrder, Contacts::kArcs, Contacts::kTouches, Contacts::kPairs}) {
     const auto pieces =
         pieces_of(shared_.problem, shared_.walls, shared_.interior, candidate.limited, as);
     if (!pieces) continue;
-    if (pieces->pieces.size() == 1) return by_flow(*pieces);
-    if (auto geodesic = by_pieces(*pieces, candidate)) return geodesic;
+    if (pieces->pieces.size() == 1) {
+      const Piece& piece = pieces->pieces.front();
+      Knots knots{piece.segments, shared_.problem.dynamics.dof, piece.z};
+      knots.z.resize(knots.z.size() + 2 * knots.dof);
+      return by_flow(std::move(knots));
+    }
+    if (auto found = with_contacts_of(*pieces)) {
+      if (candidate.minimum) found->geodesic.label = Label::kLocallyMinimal;
+      return found;
+    }
   }
   return std::nullopt;
 }
@@ -188,19 +204,22 @@ Geodesic LimitedFinish::on_grid(const Candidate& candidate, double coarse_action
   shared_.report_limits(points_along(path), geodesic);
   for (int w = 0; w < m; ++w) {
     LimitReport& limit = geodesic.limits[shared_.walls[w].limit];
+    int last = -2;  // the last node where the path was on this wall
     for (int i = 0; i <= path.intervals; ++i) {
       const std::size_t at = static_cast<std::size_t>(i) * m + w;
       const double nu = candidate.limited.nu[at];
       const double size = shared_.interior.sizes[w];
       limit.largest_multiplier = std::max(limit.largest_multiplier, nu);
       if (!(nu * size / shared_.interior.rate > candidate.limited.sigma[at] / size)) continue;
-      if (!limit.active.empty() && limit.active.back().second >= (i - 1.5) * h) {
+      if (last == i - 1) {
         limit.active.back().second = i * h;
       } else {
         limit.active.emplace_back(i * h, i * h);
       }
+      last = i;
     }
   }
+  for (LimitReport& limit : geodesic.limits) std::sort(limit.active.begin(), limit.active.end());
   const StepPlan plan = StepPlan::equal(0, shared_.problem.time, path.intervals);
   geodesic.plan = plan;
   double length = 0;
@@ -241,7 +260,7 @@ Geodesic LimitedFinish::on_grid(const Candidate& candidate, double coarse_action
   return geodesic;
 }
 
-std::optional<Geodesic> LimitedFinish::finish(Candidate candidate) const {
+std::optional<LimitedExtremal> LimitedFinish::finish(Candidate candidate) const {
   // mu on grids of 2, 4, ... times the first one. Contacts are told from the second of them in
   // nearly all cases.
   constexpr std::array kMu{3e-4, 1e-4, 1e-5, 1e-7};
@@ -251,12 +270,12 @@ std::optional<Geodesic> LimitedFinish::finish(Candidate candidate) const {
     coarse = candidate;
     if (!refine(candidate, kMu[level])) return std::nullopt;
     if (level == 0) continue;
-    if (auto geodesic = joined(candidate)) return geodesic;
+    if (auto found = joined(candidate)) return found;
   }
   if (!settle(coarse) || !settle(candidate)) return std::nullopt;
   Geodesic geodesic = on_grid(candidate, coarse.action);
   if (!shared_.keeps_to_limits(geodesic, kBeyondOnGrid)) return std::nullopt;
-  return geodesic;
+  return LimitedExtremal{std::move(geodesic), std::nullopt};
 }
 
 // With the least mu, on the same grid. Between nodes the straight line may be beyond a wall by the

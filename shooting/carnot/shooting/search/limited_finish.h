@@ -31,6 +31,11 @@ struct Candidate {
   bool tried = false;  // to finish it
 };
 
+struct LimitedExtremal {
+  Geodesic geodesic;
+  std::optional<BoundExtremal> pieces;  // where they were joined; nothing on the grid
+};
+
 class LimitedFinish {
  public:
   // Keeps references.
@@ -38,16 +43,22 @@ class LimitedFinish {
       : shared_(shared), options_(options) {}
 
   // Nothing where the candidate has no counterpart on finer grids, or is beyond a limit.
-  [[nodiscard]] std::optional<Geodesic> finish(Candidate candidate) const;
+  [[nodiscard]] std::optional<LimitedExtremal> finish(Candidate candidate) const;
+
+  // The extremal whose pieces are near these, with the same contacts; its label is not known.
+  // Nothing where there is none, or where it is beyond a limit or pulled by one.
+  [[nodiscard]] std::optional<LimitedExtremal> with_contacts_of(const BoundExtremal& near) const;
+
+  // The extremal of the problem without limits near some knots. Nothing where there is none, or
+  // where it does not keep to the limits.
+  [[nodiscard]] std::optional<LimitedExtremal> without_contact(Knots knots) const;
 
  private:
   [[nodiscard]] bool refine(Candidate& candidate, double last_mu) const;
   [[nodiscard]] bool settle(Candidate& candidate) const;
   [[nodiscard]] static std::vector<std::vector<double>> points_along(const Path& path);
-  [[nodiscard]] std::optional<Geodesic> joined(const Candidate& candidate) const;
-  [[nodiscard]] std::optional<Geodesic> by_flow(const BoundExtremal& extremal) const;
-  [[nodiscard]] std::optional<Geodesic> by_pieces(const BoundExtremal& extremal,
-                                                  const Candidate& candidate) const;
+  [[nodiscard]] std::optional<LimitedExtremal> joined(const Candidate& candidate) const;
+  [[nodiscard]] std::optional<LimitedExtremal> by_flow(Knots knots) const;
   [[nodiscard]] Geodesic on_grid(const Candidate& candidate, double coarse_action) const;
   void add_extremes(const std::vector<std::vector<double>>& q, Geodesic& geodesic) const;
 

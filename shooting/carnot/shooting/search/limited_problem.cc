@@ -89,9 +89,7 @@ std::optional<Geodesic> LimitedProblem::within(const Geodesic& geodesic) const {
 }
 
 std::optional<Path> LimitedProblem::path_along(const Geodesic& geodesic, int intervals) const {
-  const Dynamics& dynamics = problem.dynamics;
-  const int n = dynamics.dof;
-  const int k = PathLagrangian::multipliers(dynamics);
+  const int n = problem.dynamics.dof;
   std::vector<double> z = geodesic.from;
   z.insert(z.end(), geodesic.p0.begin(), geodesic.p0.end());
   const long steps = std::max<long>(intervals, geodesic.plan.count);
@@ -101,18 +99,26 @@ std::optional<Path> LimitedProblem::path_along(const Geodesic& geodesic, int int
   if (!(miss(problem, knots.at(intervals), unit) <= kNear * distance_between_ends(problem))) {
     return std::nullopt;
   }
+  return path_through(knots);
+}
+
+Path LimitedProblem::path_through(const Knots& knots) const {
+  const Dynamics& dynamics = problem.dynamics;
+  const int n = dynamics.dof;
+  const int k = PathLagrangian::multipliers(dynamics);
+  const int intervals = knots.segments;
   Path path{intervals, n, {}, std::vector<double>(static_cast<std::size_t>(intervals) * k), {}};
   std::vector<double> middle(2 * n);
   for (int i = 0; i <= intervals; ++i) {
     path.q.insert(path.q.end(), knots.at(i), knots.at(i) + n);
     if (i == intervals) break;
     for (int j = 0; j < 2 * n; ++j) middle[j] = 0.5 * (knots.at(i)[j] + knots.at(i + 1)[j]);
-    const std::span<const double> at(middle);
+    const std::span<const double> between(middle);
     const auto lambda = std::span(path.lambda).subspan(static_cast<std::size_t>(i) * k, k);
     if (dynamics.has_transcription()) {
-      dynamics.midpoint_multipliers(at.first(n), at.subspan(n), lambda);
+      dynamics.midpoint_multipliers(between.first(n), between.subspan(n), lambda);
     } else {
-      std::copy(at.begin() + n, at.end(), lambda.begin());
+      std::copy(between.begin() + n, between.end(), lambda.begin());
     }
   }
   for (int j = 0; j < n; ++j) {

@@ -9,6 +9,7 @@
 #include "carnot/shooting/path/interior_point.h"
 #include "carnot/shooting/path/path.h"
 #include "carnot/shooting/problem/walls.h"
+#include "carnot/shooting/shoot/knots.h"
 
 namespace carnot::internal {
 
@@ -26,6 +27,8 @@ class LimitedProblem {
   // The nodes and multipliers along a geodesic without limits. Nothing where its flow from p0 does
   // not arrive.
   [[nodiscard]] std::optional<Path> path_along(const Geodesic& geodesic, int intervals) const;
+  // The nodes and multipliers of a path through knots. Its end is that of the problem.
+  [[nodiscard]] Path path_through(const Knots& knots) const;
   // Sets what the points of a path say of each limit.
   void report_limits(const std::vector<std::vector<double>>& q, Geodesic& geodesic) const;
 

@@ -45,7 +45,8 @@ class LimitedSearch {
   // Solves on the grid of the path.
   [[nodiscard]] std::optional<Candidate> solve(Path path) const;
   void note(std::optional<Candidate> candidate);
-  void finish_candidates(int threads, std::vector<Geodesic>& geodesics);
+  // Says in the answer where time was up before all of them were finished.
+  void finish_candidates(int threads, const Deadline& deadline, LimitedAnswer& answer);
   [[nodiscard]] bool enough() const;
   [[nodiscard]] std::string infeasible() const;
 
@@ -188,9 +189,13 @@ std::string LimitedSearch::infeasible() const {
 
 // From the least on, until as many as are wanted are finished and some more, since the grid may
 // have them in another order.
-void LimitedSearch::finish_candidates(int threads, std::vector<Geodesic>& geodesics) {
+void LimitedSearch::finish_candidates(int threads,
+                                      const Deadline& deadline,
+                                      LimitedAnswer& answer) {
+  std::vector<Geodesic>& geodesics = answer.geodesics;
   constexpr std::size_t kMore = 2;
   constexpr std::size_t kMostTried = 24;
+  constexpr std::size_t kAtOnce = 12;  // a second or two on one core
   std::stable_sort(candidates_.begin(), candidates_.end(), [](const auto& a, const auto& b) {
     return a.action < b.action;
   });
@@ -203,21 +208,27 @@ void LimitedSearch::finish_candidates(int threads, std::vector<Geodesic>& geodes
   if (!options_.all && open.size() > wanted + kMostTried) open.resize(wanted + kMostTried);
   std::size_t next = 0;
   while (next < open.size() && (next < wanted || geodesics.size() < count)) {
-    const std::size_t round = std::min(wanted, open.size() - next);
-    std::vector<std::optional<Geodesic>> finished(round);
+    // The least ones are finished in any case: they are what the time was spent for.
+    if (next > 0 && deadline.passed()) {
+      answer.timed_out = true;
+      return;
+    }
+    const std::size_t round = std::min({wanted, kAtOnce, open.size() - next});
+    std::vector<std::optional<LimitedExtremal>> finished(round);
     parallel_for(static_cast<int>(round), threads, [&](int i) {
       finished[i] = finish_.finish(*open[next + i]);
-      if (finished[i]) finished[i]->hits = open[next + i]->hits;
+      if (finished[i]) finished[i]->geodesic.hits = open[next + i]->hits;
     });
     for (std::size_t i = next; i < next + round; ++i) open[i]->tried = true;
     next += round;
-    for (auto& geodesic : finished) {
-      const bool fits = geodesic && geodesic->length.value_or(0) <= options_.max_length;
+    for (auto& found : finished) {
+      if (!found || found->geodesic.length.value_or(0) > options_.max_length) continue;
+      Geodesic& geodesic = found->geodesic;
       const bool known =
-          fits && std::any_of(geodesics.begin(), geodesics.end(), [&](const Geodesic& other) {
-            return same_start(other, *geodesic);
+          std::any_of(geodesics.begin(), geodesics.end(), [&](const Geodesic& other) {
+            return same_start(other, geodesic);
           });
-      if (fits && !known) geodesics.push_back(std::move(*geodesic));
+      if (!known) geodesics.push_back(std::move(geodesic));
     }
   }
 }
@@ -258,9 +269,9 @@ LimitedAnswer LimitedSearch::run() {
       answer.converged += candidate ? 1 : 0;
       note(std::move(candidate));
     }
-    if (enough()) finish_candidates(threads, answer.geodesics);
+    if (enough()) finish_candidates(threads, deadline, answer);
   }
-  finish_candidates(threads, answer.geodesics);
+  finish_candidates(threads, deadline, answer);
   rank(answer.geodesics);
   if (!options_.all && answer.geodesics.size() > static_cast<std::size_t>(options_.count)) {
     answer.geodesics.resize(options_.count);
