@@ -51,7 +51,7 @@ Model::Model(ModelSource source)
       entry_(entry_of(source_)),
       searching_(run_of(source_, *entry_, true)),
       flowing_(run_of(source_, *entry_, false)),
-      limits_(limits_of(search_options({}), searching_)) {}
+      limits_(limits_of(search_options({}).asked, searching_)) {}
 
 Run Model::searching(const Texts& options) const { return with_effort(searching_, options); }
 Run Model::flowing(const Texts& options) const { return with_effort(flowing_, options); }
@@ -66,8 +66,7 @@ SearchOptions Model::search_options(const Texts& options) const {
   take(options, "minimiser", search.minimiser);
   take(options, "time-limit", search.time_limit);
   take(options, "mod-angles", search.mod_angles);
-  search.limits = source_.limits;
-  search.discs = source_.discs;
+  search.asked = asked();
   return search;
 }
 

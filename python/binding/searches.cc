@@ -58,12 +58,7 @@ py::str follow_line(const ModelPointer& model, const Texts& options, const py::o
   take(options, "time-limit", call.time_limit);
   take(options, "branches", call.branches);
   take(options, "no-labels", call.no_labels);
-  if (!model->limits().empty()) {
-    refuse("SCENE",
-           model->entry().info.name,
-           "continuation does not keep to limits",
-           "a scene without them");
-  }
+  call.asked = model->asked();
   // The parts of a request refer to each other: it stays where it is.
   const auto request =
       std::make_shared<const ContinueRequest>(check(call, model->searching(options)));

@@ -23,7 +23,7 @@ class Continuation(Value):
     """
 
     scene: Scene
-    name: str  #: what changes: "to", "from", "time" or a parameter
+    name: str  #: what changes: "to", "from", "time", "limit:NAME" or a parameter
     status: str  #: "reached", "returned", "closed", or how it stopped before
     message: str
     s: Array  #: from 0 to 1 along the line of problems
@@ -37,6 +37,7 @@ class Continuation(Value):
     label: tuple[str, ...]
     folds: tuple[dict[str, Any], ...]
     branch_points: tuple[dict[str, Any], ...]
+    contact_changes: tuple[dict[str, Any], ...]  #: where arcs on limits come and go
     elapsed_seconds: float
 
     def __len__(self) -> int:
@@ -83,5 +84,6 @@ def continuation_of(scene: Scene, json: dict[str, Any]) -> Continuation:
         label=tuple(point["label"] for point in points),
         folds=tuple(json["folds"]),
         branch_points=tuple(json["branch_points"]),
+        contact_changes=tuple(json.get("contact_changes", ())),
         elapsed_seconds=float(json["elapsed_seconds"]),
     )

@@ -245,6 +245,7 @@ class Scene:
         to: Optional[Configuration] = None,
         start: Optional[Configuration] = None,
         time: Optional[Real] = None,
+        limits: Limits = None,
         max_points: Optional[Integer] = None,
         tolerance: Optional[Real] = None,
         branches: bool = False,
@@ -252,9 +253,10 @@ class Scene:
         progress: Progress = None,
         **parameter: Real,
     ) -> Continuation:
-        """Follows a geodesic while its goal, its start, the time or a parameter goes to a value.
+        """Follows a geodesic while its goal, its start, the time, a limit or a parameter changes.
 
-        Its ends are those that the geodesic has; none of their coordinates is free.
+        Its ends are those that the geodesic has; none of their coordinates is free. `limits` is
+        {"EXPRESSION": (lower, upper)} with one of the scene's limits and the bounds to end with.
 
         >>> import carnot
         >>> car = carnot.scene("vehicle")
@@ -273,11 +275,15 @@ class Scene:
                 for name, value in parameter.items()
             },
         }
+        for limit in texts.limit_texts(limits):
+            name, bounds = limit.rsplit(" in ", 1)
+            # A limit with one bound has the number alone.
+            ways[f"limit:{name.strip()}"] = bounds.strip(" :")
         chosen = {name: value for name, value in ways.items() if value is not None}
         if len(chosen) != 1:
             raise ValueError(
-                f"--along: {len(chosen)} things change; accepted: one of to, start, time or a "
-                "parameter"
+                f"--along: {len(chosen)} things change; accepted: one of to, start, time, limits or "
+                "a parameter"
             )
         options = texts.option_texts(
             {"max_points": max_points, "tolerance": tolerance},

@@ -34,6 +34,19 @@ def test_target_start_and_time(car, parking):
     assert curve.action[-1] * 1.2 == pytest.approx(parking.best().action, rel=1e-9)
 
 
+def test_limits_move(car):
+    limited = car.replace(limits={"phi - theta": (-0.5, 0.5)})
+    start = limited.geodesics([0, 0, 0, 0], [0, 1, 0, 0], samples=257).best()
+    curve = limited.follow(start, limits={"phi - theta": (-0.4, 0.4)})
+    assert curve.status == "reached"
+    assert curve.action[0] == pytest.approx(start.action, rel=1e-9)
+    tight = car.replace(limits={"phi - theta": (-0.4, 0.4)})
+    known = tight.geodesics([0, 0, 0, 0], [0, 1, 0, 0]).best().action
+    assert curve.action[-1] == pytest.approx(known, rel=1e-9)
+    assert curve.contact_changes[0]["after"] == ["phi - theta"]
+    assert curve.value.shape == (len(curve), 2)
+
+
 def test_refuses(car, parking):
     with pytest.raises(ValueError, match="geodesic"):
         car.follow(parking, alpha=2)
@@ -43,8 +56,8 @@ def test_refuses(car, parking):
         car.follow(parking.best(), to=[0, 0, 0, 0], alpha=2)
     with pytest.raises(ValueError, match="alpah"):
         car.follow(parking.best(), alpah=2)
-    with pytest.raises(ValueError, match="limits"):
-        car.replace(limits={"phi - theta": (-1, 1)}).follow(parking.best(), alpha=2)
+    with pytest.raises(ValueError, match="no such limit"):
+        car.follow(parking.best(), limits={"phi - theta": (-0.3, 0.3)})
     with pytest.raises(ValueError, match="--max-points"):
         car.follow(parking.best(), alpha=2, max_points=0)
 
