@@ -62,8 +62,14 @@ Along parse_limit(const std::string& name,
                   const std::string& accepted) {
   Along along;
   along.kind = Along::Kind::kLimit;
+  // A formula that is typed as a name may have other spaces.
+  const auto plain = [](std::string typed) {
+    std::erase(typed, ' ');
+    return typed;
+  };
+  const std::string wanted = plain(name.substr(kLimit.size()));
   const auto found = std::find_if(ends.limits.begin(), ends.limits.end(), [&](const Limit& limit) {
-    return limit.name == name.substr(kLimit.size());
+    return plain(limit.name) == wanted;
   });
   if (found == ends.limits.end()) refuse("--along", text, "no such limit", accepted);
   along.index = found - ends.limits.begin();

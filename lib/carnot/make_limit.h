@@ -1,15 +1,22 @@
 // Limits in C++, differentiated by dual numbers:
 //
-//   problem.limits.push_back(make_limit<4>(
-//       "steering", [](const auto& q) { return q[3] - q[2]; }, -0.6, 0.6));
+//   problem.limits.push_back(make_limit(
+//       Vehicle{}, "steering", [](const auto& q) { return q[3] - q[2]; }, -0.6, 0.6));
+//
+// Where the scene is given, and has velocity constraints, arcs along the limit are exact: the scene
+// is compiled once more with one row more. Without it, as make_limit<4>("steering", ...), geodesics
+// that keep to the limit are those of a grid.
 #pragma once
 
 #include <string>
 #include <utility>
 
+#include "carnot/make_dynamics.h"
+#include "carnot/numerics/gradient.h"
 #include "carnot/numerics/jet.h"
 #include "carnot/numerics/linear_algebra.h"
 #include "carnot/scene/limit.h"
+#include "carnot/scene/velocity_constrained_scene.h"
 
 namespace carnot {
 
@@ -33,6 +40,48 @@ Limit make_limit(std::string name,
     for (int i = 0; i < n * n && hessian != nullptr; ++i) hessian[i] = y.v[i / n].v[i % n];
     return y.a.a;
   };
+  return limit;
+}
+
+// A scene whose velocities keep the value of f(q): besides its constraints df.q' = 0.
+template <VelocityConstrainedScene Scene, class F>
+struct HeldScene {
+  static constexpr int kDof = Scene::kDof;
+  static constexpr int kMultipliers = Scene::kMultipliers + 1;
+
+  Scene scene;
+  F f;
+
+  template <class T>
+  Matrix<T, kDof, kDof> mass(const Vector<T, kDof>& q) const {
+    return scene.mass(q);
+  }
+
+  template <class T>
+  Matrix<T, kMultipliers, kDof> constraints(const Vector<T, kDof>& q) const {
+    Matrix<T, kMultipliers, kDof> rows;
+    rows.topRows(Scene::kMultipliers) = scene.constraints(q);
+    rows.row(Scene::kMultipliers) = gradient(f, q).transpose();
+    return rows;
+  }
+
+  template <class T>
+  T potential(const Vector<T, kDof>& q) const requires HasPotential<Scene> {
+    return scene.potential(q);
+  }
+};
+
+// The same on a scene, which is held on the limit where a geodesic keeps to it for a while.
+template <VelocityConstrainedScene Scene, class F>
+Limit make_limit(const Scene& scene,
+                 std::string name,
+                 F f,
+                 double lower,
+                 double upper = std::numeric_limits<double>::infinity()) {
+  static_assert(Scene::kMultipliers + 1 < Scene::kDof,
+                "nothing moves along the limit: the constraints leave one direction alone");
+  Limit limit = make_limit<Scene::kDof>(std::move(name), f, lower, upper);
+  limit.held = [scene, f] { return make_dynamics(HeldScene<Scene, F>{scene, f}); };
   return limit;
 }
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "catalogue/limit_choice.h"
 #include "geodesic/geodesic_request.h"
 #include "run/run_options.h"
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "carnot/make_limit.h"
+#include "carnot/scenes/vehicle.h"
 #include "carnot/shooting/find_geodesics.h"
 #include "carnot/shooting/path/interior_point.h"
 #include "carnot/shooting/path/refinement.h"
@@ -165,6 +166,19 @@ TEST(LimitedGeodesics, AgreeWithTheirGrid) {
   EXPECT_EQ(geodesic.verification, Verification::kGrid);
   EXPECT_NEAR(geodesic.action, kParking, 1e-6);
   EXPECT_LE(std::abs(geodesic.action - kParking), geodesic.grid_error);
+  EXPECT_LE(geodesic.limit_violation, kViolation);
+}
+
+// With its scene a limit from C++ has arcs, and they are those of the text.
+TEST(LimitedGeodesics, AreExactWithScenesOfCpp) {
+  const scenes::Vehicle vehicle;
+  BoundaryValueProblem problem(make_dynamics(vehicle), {0, 0, 0, 0}, {0, 1, 0, 0});
+  problem.limits = {make_limit(
+      vehicle, "steering", [](const auto& q) { return q[3] - q[2]; }, -0.3, 0.3)};
+  const Geodesic geodesic = best(problem);
+  EXPECT_EQ(geodesic.verification, Verification::kKnots);
+  EXPECT_NEAR(geodesic.action, kParking, 1e-9 * kParking);
+  EXPECT_EQ(geodesic.limits[0].active.size(), 4U);
   EXPECT_LE(geodesic.limit_violation, kViolation);
 }
 
