@@ -48,7 +48,7 @@ class Model {
   [[nodiscard]] apps::Run searching(const Texts& options) const;
   [[nodiscard]] apps::Run flowing(const Texts& options) const;
   // Limits and discs as they were typed.
-  [[nodiscard]] AskedLimits asked() const { return {source_.limits, source_.discs}; }
+  [[nodiscard]] apps::AskedLimits asked() const { return {source_.limits, source_.discs}; }
   // Of its scene, its own limits and its discs.
   [[nodiscard]] const std::vector<Limit>& limits() const { return limits_; }
   // What every search may be asked, checked.
