@@ -139,7 +139,7 @@ class Atlas {
     check_output();
     run_.samples = parse_integer("--trajectories", call.trajectories, 0, 100000);
     options_ = check(call.search, run_);
-    list_ = make_problem_list(call.list, run_);
+    list_ = make_problem_list(call.list, run_, limits_of(call.search.asked, run_));
     models_ = std::make_unique<Models>(call_.search, run_);
     if (call_.field) check_field();
     if (!run_.destination.plot.empty()) {

@@ -143,11 +143,12 @@ class GridList : public ProblemList {
 
 class RandomList : public ProblemList {
  public:
-  RandomList(const ListOptions& options, const Run& run)
+  RandomList(const ListOptions& options, const Run& run, std::vector<Limit> limits)
       : ends_(given_ends(options, run)),
         fixed_start_(!options.from.empty()),
         size_(parse_integer("--random", options.random, 1, kMostProblems)),
         dynamics_(run.dynamics),
+        limits_(std::move(limits)),
         parameters_(run.parameters),
         seed_(run.seed) {
     if (!options.to.empty()) refuse("--to", options.to, "given besides --random", "one of the two");
@@ -161,9 +162,7 @@ class RandomList : public ProblemList {
     if (dynamics_.holonomic > 0 && !fixed_start_) {
       problem.ends.from = random_target(dynamics_, ~seed_, number);
     }
-    const bool drifts = !dynamics_.has_transcription() && dynamics_.holonomic == 0;
-    problem.ends.to = drifts ? reachable_target(dynamics_, seed_, number)
-                             : random_target(dynamics_, seed_, number);
+    problem.ends.to = trial_target(dynamics_, limits_, seed_, number);
     return problem;
   }
   [[nodiscard]] Json identity() const override {
@@ -177,13 +176,16 @@ class RandomList : public ProblemList {
   bool fixed_start_;
   long size_;
   Dynamics dynamics_;
+  std::vector<Limit> limits_;
   ParameterValues parameters_;
   std::uint64_t seed_;
 };
 
 }  // namespace
 
-std::unique_ptr<ProblemList> make_problem_list(const ListOptions& options, const Run& run) {
+std::unique_ptr<ProblemList> make_problem_list(const ListOptions& options,
+                                               const Run& run,
+                                               const std::vector<Limit>& limits) {
   constexpr const char* kAccepted = "one of --problems FILE.csv, --grid '...' and --random N";
   const auto given = static_cast<int>(!options.problems.empty()) +
                      static_cast<int>(!options.grid.empty()) +
@@ -196,7 +198,7 @@ std::unique_ptr<ProblemList> make_problem_list(const ListOptions& options, const
            kAccepted);
   }
   if (!options.grid.empty()) return std::make_unique<GridList>(options, run);
-  if (!options.random.empty()) return std::make_unique<RandomList>(options, run);
+  if (!options.random.empty()) return std::make_unique<RandomList>(options, run, limits);
   return std::make_unique<ProblemFile>(options, run, given_ends(options, run));
 }
 

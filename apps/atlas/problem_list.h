@@ -51,7 +51,10 @@ struct ListOptions {
   std::string time = "1";
 };
 
-// Throws std::invalid_argument naming the option, or the line and column of the file.
-std::unique_ptr<ProblemList> make_problem_list(const ListOptions& options, const Run& run);
+// Targets that are drawn keep to the limits. Throws std::invalid_argument naming the option, or the
+// line and column of the file.
+std::unique_ptr<ProblemList> make_problem_list(const ListOptions& options,
+                                               const Run& run,
+                                               const std::vector<Limit>& limits);
 
 }  // namespace carnot::apps

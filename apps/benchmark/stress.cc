@@ -74,33 +74,13 @@ struct Course {
   std::uint64_t seed = 0;
 };
 
-bool keeps_to(const std::vector<Limit>& limits, const std::vector<double>& q) {
-  return std::all_of(limits.begin(), limits.end(), [&](const Limit& limit) {
-    return limit.slack(limit.value(q.data(), nullptr, nullptr)) >= 0;
-  });
-}
-
-// A target that keeps to the limits: the first of some that are drawn for it.
-std::vector<double> draw_target(const Course& course, int i) {
-  constexpr std::uint64_t kMostDrawn = 1000;
-  const Dynamics& dynamics = course.dynamics;
-  const bool drifts = !dynamics.has_transcription() && dynamics.holonomic == 0;
-  std::vector<double> to;
-  for (std::uint64_t k = 0; k < kMostDrawn; ++k) {
-    const std::uint64_t seed = course.seed + (k << 32U);
-    to = drifts ? reachable_target(dynamics, seed, i) : random_target(dynamics, seed, i);
-    if (keeps_to(course.limits, to)) break;
-  }
-  return to;
-}
-
 Trial try_target(const Course& course, int i) {
   const Dynamics& dynamics = course.dynamics;
   const double began = thread_seconds();
   Trial trial;
   trial.from.assign(dynamics.dof, 0.0);
   if (dynamics.holonomic > 0) trial.from = random_target(dynamics, ~course.seed, i);
-  trial.to = draw_target(course, i);
+  trial.to = trial_target(dynamics, course.limits, course.seed, i);
   GeodesicOptions options;
   options.seed = course.seed;
   options.time_limit = course.time_limit;

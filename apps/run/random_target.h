@@ -1,12 +1,14 @@
 // Targets for trials: drawn one by one, so that number i is the same whatever else is drawn.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <numbers>
 #include <random>
 #include <vector>
 
 #include "carnot/dynamics.h"
+#include "carnot/scene/limit.h"
 #include "carnot/shooting/problem/manifold.h"
 
 namespace carnot::apps {
@@ -46,6 +48,26 @@ inline std::vector<double> reachable_target(const Dynamics& dynamics, std::uint6
     return {z.begin(), z.begin() + dynamics.dof};
   }
   return {};
+}
+
+// The target of trial i: one that can be reached where there is drift, else any; drawn again until
+// it keeps to the limits.
+inline std::vector<double> trial_target(const Dynamics& dynamics,
+                                        const std::vector<Limit>& limits,
+                                        std::uint64_t seed,
+                                        int i) {
+  constexpr std::uint64_t kMostDrawn = 1000;
+  const bool drifts = !dynamics.has_transcription() && dynamics.holonomic == 0;
+  std::vector<double> to;
+  for (std::uint64_t k = 0; k < kMostDrawn; ++k) {
+    const std::uint64_t other = seed + (k << 32U);
+    to = drifts ? reachable_target(dynamics, other, i) : random_target(dynamics, other, i);
+    const bool kept = std::all_of(limits.begin(), limits.end(), [&](const Limit& limit) {
+      return limit.slack(limit.value(to.data(), nullptr, nullptr)) >= 0;
+    });
+    if (to.empty() || kept) break;
+  }
+  return to;
 }
 
 }  // namespace carnot::apps

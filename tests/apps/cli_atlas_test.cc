@@ -324,5 +324,20 @@ TEST_F(AtlasTest, RefusesBadInput) {
   bad(header + ",set_beta\n0,0,0,0,1,0,-1\n", "beta");
 }
 
+// As those of stress: what is drawn keeps to the limits.
+TEST_F(AtlasTest, DrawsTargetsThatKeepToLimits) {
+  const Outcome outcome = sandbox.run({"atlas",
+                                       "vehicle",
+                                       "--random",
+                                       "5",
+                                       "--limit",
+                                       "phi-theta in -0.3:0.3",
+                                       "--output",
+                                       "limited.csv",
+                                       "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.json()["solved"], 5);
+}
+
 }  // namespace
 }  // namespace carnot::apps::cli_atlas_test
