@@ -160,6 +160,43 @@ TEST_P(Invariance, OfUnits) {
 INSTANTIATE_TEST_SUITE_P(Scenes, Invariance, ::testing::ValuesIn(subjects()), name_of);
 
 // Rigid motions of the plane, the mirror y -> -y, and the way back.
+// Geodesics that keep to a limit, too: the same arcs at the same times.
+TEST(Invariances, OfUnitsWithLimits) {
+  const std::vector<Subject> all = subjects();
+  const std::vector<std::pair<Subject, std::string>> limited{
+      {all[0], "limit -0.3 < phi - theta < 0.3\n"},
+      {all[0], "limit y < 1.05 L\n"},
+      {all[1], "limit -0.5 < phi - theta < 0.5\n"},
+      {all[2], "limit -0.5 < phi < 0.5\n"}};
+  for (auto [subject, limit] : limited) {
+    subject.text += limit;
+    const std::vector<double> from{0, 0, 0, 0};
+    const std::vector<double> to{0.3, 1, 0.2, 0.1};
+    const auto in = [&](const Units& units) {
+      const BoundaryValueProblem problem = problem_in(subject, from, to, units);
+      const GeodesicReport report = find_geodesics(problem);
+      EXPECT_EQ(report.status, GeodesicStatus::kConverged) << report.message;
+      return report.geodesics.empty() ? Geodesic{} : report.geodesics.front();
+    };
+    const Geodesic known = in({});
+    ASSERT_EQ(known.limits.size(), 1U);
+    for (const Units units : {Units{1e-6, 1, 1}, Units{1e6, 1, 1}, Units{1, 1e-5, 1e4}}) {
+      const Geodesic geodesic = in(units);
+      const double action = known.action * action_unit(subject, units);
+      EXPECT_NEAR(geodesic.action, action, 1e-9 * action) << limit << units.length;
+      EXPECT_EQ(geodesic.label, known.label);
+      EXPECT_EQ(geodesic.verification, known.verification);
+      ASSERT_EQ(geodesic.limits.size(), 1U);
+      ASSERT_EQ(geodesic.limits[0].active.size(), known.limits[0].active.size());
+      for (std::size_t i = 0; i < known.limits[0].active.size(); ++i) {
+        EXPECT_NEAR(geodesic.limits[0].active[i].first,
+                    known.limits[0].active[i].first * units.time,
+                    1e-9 * units.time);
+      }
+    }
+  }
+}
+
 TEST(Invariances, OfPlaces) {
   constexpr double kSame = 1e-9;
   const double turn = 0.7;

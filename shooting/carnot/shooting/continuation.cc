@@ -1,12 +1,15 @@
 #include "carnot/shooting/continuation.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <stdexcept>
 
 #include "carnot/shooting/continue/curve_tracer.h"
 #include "carnot/shooting/continue/limited_tracer.h"
+#include "carnot/shooting/problem/natural_scales.h"
 #include "carnot/shooting/problem/origin.h"
+#include "carnot/shooting/problem/rescaled.h"
 
 namespace carnot {
 
@@ -102,12 +105,30 @@ void check_start(const BoundaryValueProblem& problem, const Geodesic& start) {
   }
 }
 
-void follow_with_limits(const ProblemLine& line,
+// In the natural scales of the problem at the start.
+void follow_with_limits(const ProblemLine& asked,
                         const Geodesic& start,
                         const ContinuationOptions& options,
                         ContinuationReport& report) {
-  LimitedTracer tracer(line, options, report);
-  report.status = tracer.trace(start);
+  BoundaryValueProblem unlimited = asked.at(0);
+  unlimited.limits.clear();
+  const NaturalScales scales = natural_scales(unlimited);
+  const bool trivial = scales.trivial();
+  const ProblemLine line{
+      [&](double s) { return trivial ? asked.at(s) : rescaled(asked.at(s), scales); }};
+  Geodesic first = start;
+  ContinuationOptions scaled = options;
+  if (!trivial) {
+    put_in_own_units(scales.inverse(), first);
+    scaled.tolerance /= *std::max_element(scales.q.begin(), scales.q.end());
+  }
+  LimitedTracer tracer(line, scaled, report);
+  report.status = tracer.trace(first);
+  for (ContinuationPoint& point : report.points) {
+    if (trivial) break;
+    put_in_own_units(asked.at(point.s), scales, point.geodesic);
+  }
+  for (ContactChange& change : report.contact_changes) change.action *= scales.action;
   report.message = message_of(report);
   if (report.status == ContinuationStatus::kNotConverged) {
     report.message =

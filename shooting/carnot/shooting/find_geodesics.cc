@@ -123,7 +123,7 @@ GeodesicOptions in_scales(const NaturalScales& scales,
 // From the natural scales of `problem` to its own units, where errors are measured again.
 void finish(const BoundaryValueProblem& problem, const NaturalScales& scales, Extremal& extremal) {
   Geodesic& geodesic = extremal.geodesic;
-  put_in_own_units(scales, geodesic);
+  put_in_own_units(problem, scales, geodesic);
   Knots& knots = extremal.knots;
   for (int i = 0; i <= knots.segments; ++i) {
     for (int j = 0; j < knots.dof; ++j) {
@@ -133,9 +133,7 @@ void finish(const BoundaryValueProblem& problem, const NaturalScales& scales, Ex
   }
   // What was asked for is answered to the last digit.
   for (int j = 0; j < problem.dynamics.dof; ++j) {
-    if (!problem.is_free_to(j)) geodesic.to[j] = problem.to[j];
     if (problem.is_free_from(j)) continue;
-    geodesic.from[j] = problem.from[j];
     knots.at(0)[j] = problem.from[j];
     if (!geodesic.trajectory.q.empty()) geodesic.trajectory.q.front()[j] = problem.from[j];
   }
@@ -262,6 +260,32 @@ Trajectory every(const Trajectory& dense, long stride, long samples) {
   return some;
 }
 
+// Searches in natural scales. `free` and what is found are in the units of the problem.
+LimitedAnswer search_in_scales(const BoundaryValueProblem& problem,
+                               const NaturalScales& scales,
+                               const GeodesicOptions& options,
+                               const std::vector<Geodesic>& free) {
+  if (scales.trivial()) return search_with_limits(problem, options, free);
+  std::vector<Geodesic> scaled = free;
+  for (Geodesic& geodesic : scaled) put_in_own_units(scales.inverse(), geodesic);
+  LimitedAnswer answer = search_with_limits(rescaled(problem, scales), options, scaled);
+  for (Geodesic& geodesic : answer.geodesics) {
+    // An extremal without limits that keeps to them is left as it was, to the last digit.
+    const auto same = std::find_if(scaled.begin(), scaled.end(), [&](const Geodesic& known) {
+      return known.p0 == geodesic.p0;
+    });
+    if (same != scaled.end()) {
+      Geodesic known = free[same - scaled.begin()];
+      known.limits = geodesic.limits;
+      known.limit_violation = geodesic.limit_violation;
+      geodesic = std::move(known);
+      continue;
+    }
+    put_in_own_units(problem, scales, geodesic);
+  }
+  return answer;
+}
+
 // The least of what each image of the target gives, where limits are kept to.
 GeodesicReport find_with_limits(const BoundaryValueProblem& asked, const GeodesicOptions& options) {
   constexpr std::size_t kImages = 4;
@@ -310,9 +334,10 @@ GeodesicReport find_with_limits(const BoundaryValueProblem& asked, const Geodesi
   const std::vector<Geodesic> known = std::exchange(report.geodesics, {});
   report.missed_estimate.reset();  // it counts extremals without limits
   report.reason = Reason::kNone;
+  const NaturalScales scales = natural_scales(problem);
   problem.limits = asked.limits;
-  GeodesicOptions rest = options;
-  rest.tolerance = rest.absolute_tolerance.value_or(rest.tolerance);
+  GeodesicOptions rest =
+      in_scales(scales, problem, std::vector<double>(problem.from.size(), 0.0), options);
   bool finished = true;
   bool timed_out = deadline.left() == 0;
   for (const Image& image : images) {
@@ -322,7 +347,7 @@ GeodesicReport find_with_limits(const BoundaryValueProblem& asked, const Geodesi
       if (geodesic.windings == image.windings) of_image.push_back(geodesic);
     }
     rest.time_limit = deadline.left();
-    LimitedAnswer answer = search_with_limits(problem, rest, of_image);
+    LimitedAnswer answer = search_in_scales(problem, scales, rest, of_image);
     finished = answer.finished;
     timed_out = timed_out || answer.timed_out;
     report.starts += answer.starts;

@@ -232,6 +232,16 @@ void set_reach_scales(const BoundaryValueProblem& problem, NaturalScales& scales
 
 double NaturalScales::length() const { return std::sqrt(action * time); }
 
+NaturalScales NaturalScales::inverse() const {
+  NaturalScales back = *this;
+  for (auto* units : {&back.q, &back.rows, &back.multipliers}) {
+    for (double& unit : *units) unit = 1 / unit;
+  }
+  back.time = 1 / time;
+  back.action = 1 / action;
+  return back;
+}
+
 bool NaturalScales::trivial() const {
   const auto is_one = [](double scale) { return scale == 1; };
   return time == 1 && action == 1 && std::all_of(q.begin(), q.end(), is_one) &&

@@ -36,6 +36,8 @@ struct NaturalScales {
   [[nodiscard]] double energy() const { return action / time; }
   // Of the integral of sqrt(v'M v), since v'M v is an energy.
   [[nodiscard]] double length() const;
+  // Those that lead back.
+  [[nodiscard]] NaturalScales inverse() const;
   // Whether all are one.
   [[nodiscard]] bool trivial() const;
 };

@@ -478,6 +478,38 @@ Dynamics rescaled(const Dynamics& dynamics, const NaturalScales& scales) {
   return result;
 }
 
+namespace {
+
+// Values stay; what they depend on is in other units.
+Limit rescaled(const Limit& limit, const NaturalScales& scales) {
+  Limit result = limit;
+  result.value = [value = limit.value, units = scales.q](
+                     const double* q, double* gradient, double* hessian) {
+    const std::size_t n = units.size();
+    double* const at = scratch(static_cast<int>(n));
+    for (std::size_t j = 0; j < n; ++j) at[j] = q[j] * units[j];
+    const double result = value(at, gradient, hessian);
+    for (std::size_t j = 0; j < n && gradient != nullptr; ++j) gradient[j] *= units[j];
+    for (std::size_t e = 0; e < n * n && hessian != nullptr; ++e) {
+      hessian[e] *= units[e / n] * units[e % n];
+    }
+    return result;
+  };
+  if (limit.held) {
+    result.held = [held = limit.held, scales] {
+      const Dynamics dynamics = held();
+      // Its flows alone are asked for, so the unit of the one row more is of no consequence.
+      NaturalScales with_row = scales;
+      with_row.rows.resize(dynamics.transcribed, 1.0);
+      with_row.multipliers.resize(dynamics.multipliers, scales.action);
+      return internal::rescaled(dynamics, with_row);
+    };
+  }
+  return result;
+}
+
+}  // namespace
+
 BoundaryValueProblem rescaled(const BoundaryValueProblem& problem, const NaturalScales& scales) {
   BoundaryValueProblem result = problem;
   result.dynamics = rescaled(problem.dynamics, scales);
@@ -486,6 +518,7 @@ BoundaryValueProblem rescaled(const BoundaryValueProblem& problem, const Natural
     result.to[j] /= scales.q[j];
   }
   result.time /= scales.time;
+  for (Limit& limit : result.limits) limit = rescaled(limit, scales);
   return result;
 }
 
@@ -500,6 +533,24 @@ void put_in_own_units(const NaturalScales& scales, Geodesic& geodesic) {
   const auto put_lambda = [&](std::vector<double>& lambda) {
     for (std::size_t i = 0; i < lambda.size(); ++i) lambda[i] *= scales.multipliers[i];
   };
+  const auto largest = [&](const auto& unit) {
+    double size = 0;
+    for (int j = 0; j < n; ++j) size = std::max(size, unit(j));
+    return size;
+  };
+  const double largest_q = largest([&](int j) { return scales.q[j]; });
+  const double largest_p = largest([&](int j) { return scales.momentum(j); });
+  geodesic.endpoint_error *= largest_q;
+  geodesic.transversality_error *= largest_p;
+  geodesic.knot_defect *= std::max(largest_q, largest_p);
+  geodesic.grid_error *= scales.action;
+  for (LimitReport& limit : geodesic.limits) {
+    limit.largest_multiplier *= scales.energy();
+    for (auto& [begin, end] : limit.active) {
+      begin *= scales.time;
+      end *= scales.time;
+    }
+  }
   put_q(geodesic.from);
   put_q(geodesic.to);
   put_p(geodesic.p0);
@@ -520,6 +571,16 @@ void put_in_own_units(const NaturalScales& scales, Geodesic& geodesic) {
   for (auto& q : samples.q) put_q(q);
   for (auto& p : samples.p) put_p(p);
   for (auto& lambda : samples.lambda) put_lambda(lambda);
+}
+
+void put_in_own_units(const BoundaryValueProblem& problem,
+                      const NaturalScales& scales,
+                      Geodesic& geodesic) {
+  put_in_own_units(scales, geodesic);
+  for (int j = 0; j < problem.dynamics.dof; ++j) {
+    if (!problem.is_free_from(j)) geodesic.from[j] = problem.from[j];
+    if (!problem.is_free_to(j)) geodesic.to[j] = problem.to[j];
+  }
 }
 
 }  // namespace carnot::internal
