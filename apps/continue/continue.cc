@@ -52,7 +52,10 @@ void add_continue_options(CLI::App& app, ContinueCall& options) {
       "momentum to start from instead; with limits, of the one to start from");
   add("--time-limit", options.time_limit, "SECONDS", "of the search for the start (none)");
   add("--max-points", options.max_points, "N", "stop after so many (1000)");
-  add("--tolerance", options.tolerance, "TOL", "largest error at the end (1e-10)");
+  add("--tolerance",
+      options.tolerance,
+      "TOL",
+      "largest error at the end (1e-10 of the problem's own scales)");
   add_limit_options(app, options.asked);
   app.add_flag("--branches", options.branches, "follow the curves that cross at branch points");
   app.add_flag("--no-labels", options.no_labels, "leave out Morse index and label: faster");

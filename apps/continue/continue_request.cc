@@ -43,7 +43,7 @@ std::optional<Geodesic> start_of(const BoundaryValueProblem& problem,
   GeodesicOptions search;
   search.count = chosen ? kToChooseFrom : request.rank;
   if (!chosen) search.guess = request.guess;
-  search.absolute_tolerance = request.options.tolerance;
+  search.absolute_tolerance = request.options.absolute_tolerance;
   search.time_limit = request.time_limit;
   search.seed = request.run.seed;
   search.threads = request.run.threads;
@@ -111,7 +111,9 @@ ContinueRequest check(const ContinueCall& options, Run run) {
   }
   request.options.max_points =
       static_cast<int>(parse_integer("--max-points", options.max_points, 1, kMostPoints));
-  request.options.tolerance = parse_tolerance("--tolerance", options.tolerance);
+  if (!options.tolerance.empty()) {
+    request.options.absolute_tolerance = parse_tolerance("--tolerance", options.tolerance);
+  }
   if (!options.time_limit.empty()) {
     request.time_limit = parse_positive("--time-limit", options.time_limit);
   }

@@ -19,7 +19,7 @@ struct ContinueCall {
   std::string rank;
   std::string guess;
   std::string max_points = "1000";
-  std::string tolerance = "1e-10";
+  std::string tolerance;
   std::string time_limit;
   bool branches = false;
   bool no_labels = false;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "carnot/load_scene.h"
+#include "carnot/shooting/continuation.h"
 #include "carnot/shooting/find_geodesics.h"
 #include "carnot/shooting/problem/natural_scales.h"
 #include "carnot/shooting/problem/rescaled.h"
@@ -194,6 +195,33 @@ TEST(Invariances, OfUnitsWithLimits) {
                     1e-9 * units.time);
       }
     }
+  }
+}
+
+// A curve of geodesics turns at the same place.
+TEST(Invariances, OfUnitsInContinuation) {
+  const Subject subject = subjects()[0];
+  const std::vector<double> to{0.3, 1.2, 0.1, 0};
+  const auto in = [&](const Units& units) {
+    const BoundaryValueProblem problem = problem_in(subject, {0, 0, 0, 0}, {0, 1, 0, 0}, units);
+    const GeodesicReport found = find_geodesics(problem);
+    EXPECT_FALSE(found.geodesics.empty()) << found.message;
+    return continue_geodesic(
+        moving_target(problem, problem_in(subject, {0, 0, 0, 0}, to, units).to),
+        found.geodesics.at(0));
+  };
+  const ContinuationReport known = in({});
+  ASSERT_EQ(known.status, ContinuationStatus::kReturned) << known.message;
+  ASSERT_EQ(known.folds.size(), 1U);
+  for (const Units units : {Units{1e-6, 1, 1}, Units{1e6, 1, 1}, Units{1e3, 1e-5, 1e4}}) {
+    const ContinuationReport report = in(units);
+    ASSERT_EQ(report.status, known.status) << report.message;
+    ASSERT_EQ(report.folds.size(), 1U);
+    EXPECT_NEAR(report.folds[0].s, known.folds[0].s, 1e-9);
+    const double unit = action_unit(subject, units);
+    EXPECT_NEAR(report.folds[0].action / unit, known.folds[0].action, 1e-8);
+    EXPECT_NEAR(
+        report.points.back().geodesic.action / unit, known.points.back().geodesic.action, 1e-8);
   }
 }
 

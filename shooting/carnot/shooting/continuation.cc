@@ -105,30 +105,12 @@ void check_start(const BoundaryValueProblem& problem, const Geodesic& start) {
   }
 }
 
-// In the natural scales of the problem at the start.
-void follow_with_limits(const ProblemLine& asked,
+void follow_with_limits(const ProblemLine& line,
                         const Geodesic& start,
                         const ContinuationOptions& options,
                         ContinuationReport& report) {
-  BoundaryValueProblem unlimited = asked.at(0);
-  unlimited.limits.clear();
-  const NaturalScales scales = natural_scales(unlimited);
-  const bool trivial = scales.trivial();
-  const ProblemLine line{
-      [&](double s) { return trivial ? asked.at(s) : rescaled(asked.at(s), scales); }};
-  Geodesic first = start;
-  ContinuationOptions scaled = options;
-  if (!trivial) {
-    put_in_own_units(scales.inverse(), first);
-    scaled.tolerance /= *std::max_element(scales.q.begin(), scales.q.end());
-  }
-  LimitedTracer tracer(line, scaled, report);
-  report.status = tracer.trace(first);
-  for (ContinuationPoint& point : report.points) {
-    if (trivial) break;
-    put_in_own_units(asked.at(point.s), scales, point.geodesic);
-  }
-  for (ContactChange& change : report.contact_changes) change.action *= scales.action;
+  LimitedTracer tracer(line, options, report);
+  report.status = tracer.trace(start);
   report.message = message_of(report);
   if (report.status == ContinuationStatus::kNotConverged) {
     report.message =
@@ -159,6 +141,23 @@ void follow_curves(const ProblemLine& asked,
   }
 }
 
+void put_in_own_units(const ProblemLine& asked,
+                      const NaturalScales& scales,
+                      ContinuationReport& report) {
+  for (ContinuationPoint& point : report.points) {
+    internal::put_in_own_units(asked.at(point.s), scales, point.geodesic);
+  }
+  for (auto* points : {&report.folds, &report.branch_points}) {
+    for (SpecialPoint& point : *points) {
+      point.action *= scales.action;
+      for (std::size_t j = 0; j < point.p0.size(); ++j) {
+        point.p0[j] *= scales.momentum(static_cast<int>(j));
+      }
+    }
+  }
+  for (ContactChange& change : report.contact_changes) change.action *= scales.action;
+}
+
 }  // namespace
 
 void ContinuationOptions::validate() const {
@@ -173,7 +172,9 @@ void ContinuationOptions::validate() const {
           largest_step,
           ">= first_step");
   require(max_points >= 1, "max_points", max_points, ">= 1");
-  require(tolerance > 0 && std::isfinite(tolerance), "tolerance", tolerance, "> 0");
+  for (const double each : {tolerance, absolute_tolerance.value_or(tolerance)}) {
+    require(each > 0 && std::isfinite(each), "tolerance", each, "> 0");
+  }
 }
 
 ContinuationReport continue_geodesic(const ProblemLine& asked,
@@ -185,8 +186,29 @@ ContinuationReport continue_geodesic(const ProblemLine& asked,
   original.validate();
   asked.at(1).validate();
   check_start(original, start);
+  const auto follow = original.limits.empty() ? follow_curves : follow_with_limits;
+  BoundaryValueProblem unlimited = original;
+  unlimited.limits.clear();
+  const NaturalScales scales = natural_scales(unlimited);
+  ContinuationOptions scaled = options;
+  if (options.absolute_tolerance) {
+    scaled.tolerance =
+        *options.absolute_tolerance / *std::max_element(scales.q.begin(), scales.q.end());
+  }
   ContinuationReport report;
-  (original.limits.empty() ? follow_curves : follow_with_limits)(asked, start, options, report);
+  if (scales.trivial()) {
+    follow(asked, start, scaled, report);
+  } else {
+    const ProblemLine line{[&](double s) { return rescaled(asked.at(s), scales); },
+                           asked.only_target};
+    Geodesic first = start;
+    // An extremal that is known by its momentum alone starts where the problem does.
+    if (first.from.empty()) first.from = original.from;
+    if (first.to.empty()) first.to = original.to;
+    internal::put_in_own_units(scales.inverse(), first);
+    follow(line, first, scaled, report);
+    put_in_own_units(asked, scales, report);
+  }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - began;
   report.elapsed_seconds = elapsed.count();
   return report;

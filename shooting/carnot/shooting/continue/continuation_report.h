@@ -1,6 +1,7 @@
 // What may be asked of a continuation, and what it answers.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,11 @@ struct ContinuationOptions {
   int max_points = 1000;  // in all
   bool branches = false;  // follow those that start at branch points of the first curve, too
   bool labels = true;     // Morse index and label of every point; conjugate times are not located
-  double tolerance = 1e-10;  // largest endpoint error of a verified point
-  Progress progress;         // fraction done; returns false to stop
+  // Largest endpoint error of a verified point, in the natural scales of the problem at the start;
+  // and the same in the units of the coordinates, which takes its place where it is given.
+  double tolerance = 1e-10;
+  std::optional<double> absolute_tolerance;
+  Progress progress;  // fraction done; returns false to stop
 
   // Throws std::invalid_argument naming the option and what is accepted.
   void validate() const;

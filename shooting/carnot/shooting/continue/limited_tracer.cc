@@ -98,7 +98,6 @@ LimitedTracer::LimitedTracer(const ProblemLine& line,
                              const ContinuationOptions& options,
                              ContinuationReport& report)
     : line_(line), options_(options), report_(report) {
-  finishing_.absolute_tolerance = options.tolerance;
   finishing_.tolerance = options.tolerance;
   finishing_.samples = kIntervals + 1;
 }

@@ -14,7 +14,7 @@ struct SteeringOptions {
   bool mod_angles = true;         // angles need to agree modulo their periods only
   std::vector<bool> free_target;  // which coordinates of targets are free; empty: none
   int starts = 0;            // paths to relax; 0: until the least action has been hit often enough
-  double tolerance = 1e-10;  // largest endpoint error
+  double tolerance = 1e-10;  // largest endpoint error, in the natural scales of a question
   double resolution = 1e-9;  // |to - from| below which the path is estimated
   std::uint64_t seed = 0;
   int threads = 1;            // of one search

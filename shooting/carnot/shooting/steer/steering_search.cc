@@ -56,7 +56,7 @@ GeodesicOptions SteeringSearch::options_of_search(int count) const {
   GeodesicOptions search;
   search.count = count;
   search.starts = options_.starts;
-  search.absolute_tolerance = options_.tolerance;
+  search.tolerance = options_.tolerance;
   search.seed = options_.seed;
   search.threads = options_.threads;
   search.samples = kSteeringSamples;
