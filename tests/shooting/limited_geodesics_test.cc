@@ -278,6 +278,29 @@ TEST(LimitedGeodesics, AreCheckedWithoutSamples) {
   }
 }
 
+// A free end may be on a wall, which stops it there.
+TEST(LimitedGeodesics, MayEndOnAWall) {
+  BoundaryValueProblem problem = parking("limit -0.3 < phi - theta < 0.3 \"steering\"\n");
+  problem.free_to = {false, false, false, true};
+  const Geodesic geodesic = best(problem);
+  EXPECT_EQ(geodesic.verification, Verification::kKnots);
+  EXPECT_LE(geodesic.knot_defect, 1e-10);
+  EXPECT_LE(geodesic.transversality_error, 1e-9);
+  EXPECT_NEAR(std::abs(geodesic.to[3]), 0.3, 1e-12);
+  EXPECT_NEAR(geodesic.limits.at(0).active.back().second, 1, 1e-12);
+  expect_kept(problem, geodesic);
+  // No other end costs less, and the same end costs as much.
+  problem.free_to.clear();
+  problem.to[3] = geodesic.to[3];
+  const double fixed = best(problem).action;
+  EXPECT_LE(geodesic.action, fixed * (1 + 1e-9));
+  EXPECT_NEAR(geodesic.action, fixed, 1e-5 * fixed);  // that one is on a grid
+  for (const double share : {0.97, 0.5, -1.0}) {
+    problem.to[3] = share * geodesic.to[3];
+    EXPECT_GE(best(problem).action, geodesic.action * (1 - 1e-9)) << share;
+  }
+}
+
 // An image of the target that is beyond a limit is none to go to; the others are.
 TEST(LimitedGeodesics, GoToTheImagesThatKeepToLimits) {
   BoundaryValueProblem problem = parking("limit -0.5 < phi - theta < 0.5 \"steering\"\n");

@@ -108,8 +108,9 @@ std::optional<LimitedExtremal> LimitedFinish::with_contacts_of(const BoundExtrem
     const int wall = piece.leaves();
     if (wall >= 0) {
       const double unit = shared_.interior.rate / shared_.interior.sizes[wall];
-      if (!(measured.least_multiplier[k] >= kPull * unit) ||
-          piece.release < kPull * unit * shared_.problem.time) {
+      const double impulse = kPull * unit * shared_.problem.time;
+      if (!(measured.least_multiplier[k] >= kPull * unit) || piece.release < impulse ||
+          !(measured.stop >= impulse)) {
         return std::nullopt;
       }
       LimitReport& limit = geodesic.limits[shared_.walls[wall].limit];

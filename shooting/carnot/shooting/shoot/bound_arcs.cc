@@ -128,7 +128,8 @@ class Equations {
     if (!last) {
       next = i + 1 < piece.segments ? &piece.z[(i + 1) * 2 * n_] : extremal.pieces[k + 1].z.data();
     }
-    const WallAt wall = leaves && !last ? wall_at(walls_, n_, piece.leaves(), next) : WallAt{};
+    const WallAt wall =
+        leaves ? wall_at(walls_, n_, piece.leaves(), last ? end.data() : next) : WallAt{};
     for (int r = 0; r < (last ? n_ : 2 * n_); ++r, ++row) {
       const int at = last ? target_index(problem_, r) : r;
       const double scale = unit(at);
@@ -142,12 +143,24 @@ class Equations {
           (at < n_ ? at_end.by_p(0, at) : -at_end.by_q(0, at - n_)) / (scale * piece.segments);
       if (k + 1 < pieces_) jacobian(row, times_at() + k) += rate;
       if (k > 0) jacobian(row, times_at() + k - 1) -= rate;
-      if (!leaves || last || at < n_) continue;
+      if (!leaves || at < n_) continue;
       const int a = at - n_;
       residual[row] -= piece.release * wall.gradient[a] / scale;
       jacobian(row, times_at() + pieces_ - 1 + arc) -= wall.gradient[a] / scale;
-      for (int j = 0; j < n_; ++j) {
-        jacobian(row, column(segment + 1, j)) -= piece.release * wall.hessian(a, j) / scale;
+      if (!last) {
+        for (int j = 0; j < n_; ++j) {
+          jacobian(row, column(segment + 1, j)) -= piece.release * wall.hessian(a, j) / scale;
+        }
+        continue;
+      }
+      // At the end the gradient moves with the end of the flow.
+      for (int b = 0; b < n_; ++b) {
+        const double bend = piece.release * wall.hessian(a, b) / scale;
+        for (int j = 0; j < 2 * n_; ++j) {
+          const int c = column(segment, j);
+          if (c >= 0) jacobian(row, c) -= bend * m(b, j);
+        }
+        if (k > 0) jacobian(row, times_at() + k - 1) += bend * at_end.by_p(0, b) / piece.segments;
       }
     }
     return true;

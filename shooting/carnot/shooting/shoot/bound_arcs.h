@@ -18,6 +18,11 @@
 // passed tangentially, is touched at a point. There p jumps by -eta ds, and s = 0 and ds.H_p = 0
 // hold.
 //
+// An arc may last to the end, where coordinates are free. There is no jump then, and the momenta of
+// free coordinates are not zero but those of the force with which the wall stops the end, a
+// multiple kappa >= 0 of ds. With the momentum on the arc p = (eta + kappa) ds in these
+// coordinates, so the unknown at the end is eta + kappa.
+//
 // They are solved together with those of multiple shooting (shooting_equations.h) by Newton's
 // method with exact derivatives. Arcs are for limits of first order: ds.H_p must depend on p there.
 #pragma once
@@ -35,7 +40,7 @@ struct Piece {
   int touches = -1;       // the wall that a free piece touches at its end; -1: none
   double end = 0;         // when it ends
   int segments = 1;       // flows that it is made of, equally long
-  double release = 0;     // eta at its end
+  double release = 0;     // eta at its end; eta + kappa where that is the end of the path
   std::vector<double> z;  // where the segments start, segments x 2n
 
   // The wall that p jumps along at its end; -1: none.

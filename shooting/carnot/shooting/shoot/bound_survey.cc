@@ -141,6 +141,11 @@ BoundSurvey survey_pieces(const BoundaryValueProblem& problem,
       total.constraint_error = std::max(total.constraint_error, part.constraint_error);
       record(problem, walls, terms, piece.wall, part.trajectory, total.trajectory);
       if (last) {
+        if (piece.leaves() >= 0) {
+          result.stop = piece.release - eta_at(walls, terms, piece.wall, z.data(), n);
+          const WallAt wall = wall_at(walls, n, piece.wall, z.data());
+          for (int j = 0; j < n; ++j) z[n + j] -= piece.release * wall.gradient[j];
+        }
         result.end = z;
         const double unit = length_per_momentum(problem, &extremal.pieces[0].z[n]);
         result.defect = std::max(result.defect, miss(problem, z.data(), unit));

@@ -13,9 +13,10 @@ struct BoundSurvey {
   bool completed = false;
   FlowSummary summary;
   double defect = 0;
-  std::vector<double> end;                 // z(T)
+  std::vector<double> end;                 // z(T), without the momenta that a wall stops
   std::vector<double> largest_multiplier;  // nu, of each piece
   std::vector<double> least_multiplier;    // zero where it is nowhere negative; NaN: not known
+  double stop = 0;                         // kappa, with which a wall stops the end
 };
 BoundSurvey survey_pieces(const BoundaryValueProblem& problem,
                           const Walls& walls,

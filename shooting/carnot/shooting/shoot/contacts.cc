@@ -41,7 +41,7 @@ bool is_of_first_order(const Walls& walls,
   return moved.dot(wall.gradient) > kNone * largest * wall.gradient.squaredNorm();
 }
 
-// In order of time. Nothing where two walls are met at once, or one at an end.
+// In order of time. Nothing where two walls are met at once, or one at the start.
 std::optional<std::vector<Contact>> contacts_of(const Walls& walls,
                                                 const InteriorPointOptions& options,
                                                 const LimitedPath& limited,
@@ -55,7 +55,7 @@ std::optional<std::vector<Contact>> contacts_of(const Walls& walls,
       const std::size_t i = static_cast<std::size_t>(node) * m + w;
       const double size = options.sizes[w];
       if (!(limited.nu[i] * size / options.rate > limited.sigma[i] / size)) continue;
-      if (met >= 0 || node == 0 || node == last) return std::nullopt;
+      if (met >= 0 || node == 0) return std::nullopt;
       met = w;
     }
     if (met < 0) continue;
@@ -69,7 +69,7 @@ std::optional<std::vector<Contact>> contacts_of(const Walls& walls,
     contact.last = node;
     contact.impulse += h * nu(node);
     if (nu(node) > nu(contact.strongest)) contact.strongest = node;
-    if (nu(node) >= nu(node - 1) && nu(node) >= nu(node + 1)) {
+    if (node < last && nu(node) >= nu(node - 1) && nu(node) >= nu(node + 1)) {
       if (contact.first_peak < 0) contact.first_peak = node;
       contact.last_peak = node;
     }
@@ -123,24 +123,28 @@ std::optional<BoundExtremal> pieces_of(const BoundaryValueProblem& problem,
   };
   for (const Contact& contact : *contacts) {
     Piece free;
+    const bool arc = as == Contacts::kArcs ||
+                     (as == Contacts::kByOrder && is_of_first_order(walls, terms, path, contact));
+    const bool stays = contact.last == path.intervals;
+    if (stays && !arc) return std::nullopt;
     if (as == Contacts::kPairs) {
       if (contact.first_peak == contact.last_peak) return std::nullopt;
       free.touches = contact.wall;
       free.release = 0.5 * contact.impulse;
       add(free, contact.first_peak, 0);
       add(free, contact.last_peak, 0);
-    } else if (as == Contacts::kTouches ||
-               (as == Contacts::kByOrder && !is_of_first_order(walls, terms, path, contact))) {
+    } else if (!arc) {
       free.touches = contact.wall;
       free.release = contact.impulse;
       add(free, contact.strongest, 0);
     } else {
       if (contact.last == contact.first || contact.first <= begin) return std::nullopt;
       add(free, contact.first, 0);
-      Piece arc;
-      arc.wall = contact.wall;
-      arc.release = contact.impulse;
-      add(arc, contact.last, contact.impulse);
+      Piece held;
+      held.wall = contact.wall;
+      held.release = contact.impulse;
+      add(held, contact.last, contact.impulse);
+      if (stays) return extremal;
     }
   }
   add(Piece{}, path.intervals, 0);

@@ -15,7 +15,7 @@ namespace carnot::internal {
 enum class Contacts { kByOrder, kArcs, kTouches, kPairs };
 
 // The pieces of a path on the grid, by where its multipliers exceed its slacks. Nothing where a
-// wall is met at the ends of the path or together with another one.
+// wall is met at the start of the path or together with another one.
 std::optional<BoundExtremal> pieces_of(const BoundaryValueProblem& problem,
                                        const Walls& walls,
                                        const InteriorPointOptions& options,
