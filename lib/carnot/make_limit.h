@@ -8,6 +8,7 @@
 // that keep to the limit are those of a grid.
 #pragma once
 
+#include <array>
 #include <string>
 #include <utility>
 
@@ -82,6 +83,34 @@ Limit make_limit(const Scene& scene,
                 "nothing moves along the limit: the constraints leave one direction alone");
   Limit limit = make_limit<Scene::kDof>(std::move(name), f, lower, upper);
   limit.held = [scene, f] { return make_dynamics(HeldScene<Scene, F>{scene, f}); };
+  return limit;
+}
+
+// A disc of the plane that a point of the body keeps out of. point(q) is {x, y}, of any scalar
+// type:
+//
+//   problem.limits.push_back(make_disc(
+//       Vehicle{}, "pillar, front", [](const auto& q) { return std::array{q[0], q[1]}; }, {1, 2},
+//       0.3));
+//
+// What is limited is the square of the distance over twice the radius, which is smooth.
+template <VelocityConstrainedScene Scene, class Point>
+Limit make_disc(const Scene& scene,
+                std::string name,
+                Point point,
+                const std::array<double, 2>& centre,
+                double radius) {
+  Limit limit = make_limit(
+      scene,
+      std::move(name),
+      [point, centre, radius](const auto& q) {
+        const auto at = point(q);
+        const auto dx = at[0] - centre[0];
+        const auto dy = at[1] - centre[1];
+        return (dx * dx + dy * dy) * (0.5 / radius);
+      },
+      0.5 * radius);
+  limit.outline = circle_outline(centre, radius);
   return limit;
 }
 

@@ -12,6 +12,7 @@
 
 #include "carnot/load_scene.h"
 #include "carnot/make_limit.h"
+#include "carnot/scenes/vehicle.h"
 
 namespace carnot::limit_test {
 namespace {
@@ -97,6 +98,23 @@ TEST(Limit, FromTextIsThatOfCpp) {
                    },
                    0),
                kSomewhere);
+}
+
+TEST(Limit, OfADiscInCppIsThatOfTheText) {
+  const auto points = limits_of("point front = (x, y)\ndisc (1, 2), 0.5\n");
+  ASSERT_EQ(points.size(), 1U);
+  const Limit disc = make_disc(
+      scenes::Vehicle{},
+      "pillar",
+      [](const auto& q) {
+        return std::array{q[0], q[1]};
+      },
+      {1, 2},
+      0.5);
+  expect_equal(points[0], disc, kSomewhere);
+  EXPECT_EQ(points[0].lower, disc.lower);
+  EXPECT_EQ(points[0].outline, disc.outline);
+  EXPECT_TRUE(disc.held);
 }
 
 // Near the circle the value grows like the distance from it.

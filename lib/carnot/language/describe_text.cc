@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -135,11 +133,9 @@ Limit limit_of(const SceneSource& scene, const LimitSource& source) {
   limit.name = source.name;
   limit.lower = source.lower;
   limit.upper = source.upper;
-  constexpr int kCorners = 72;  // of a circle that looks round
-  for (int i = 0; i < kCorners && source.disc; ++i) {
+  if (source.disc) {
     const auto& [x, y, radius] = *source.disc;
-    const double angle = 2 * std::numbers::pi * i / kCorners;
-    limit.outline.push_back({x + radius * std::cos(angle), y + radius * std::sin(angle)});
+    limit.outline = circle_outline({x, y}, radius);
   }
   limit.value = [of = numbers(scene, all), n](const double* q, double* gradient, double* hessian) {
     const std::vector<double> values = of.at(q);

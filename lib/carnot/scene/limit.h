@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -33,5 +35,17 @@ struct Limit {
   // How far from the nearer bound the value is; negative beyond it.
   [[nodiscard]] double slack(double of) const { return std::min(of - lower, upper - of); }
 };
+
+// The corners of a circle that looks round, for an outline.
+inline std::vector<std::array<double, 2>> circle_outline(const std::array<double, 2>& centre,
+                                                         double radius) {
+  constexpr int kCorners = 72;
+  std::vector<std::array<double, 2>> corners;
+  for (int i = 0; i < kCorners; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kCorners;
+    corners.push_back({centre[0] + radius * std::cos(angle), centre[1] + radius * std::sin(angle)});
+  }
+  return corners;
+}
 
 }  // namespace carnot
