@@ -19,6 +19,8 @@ On failure "reason" is a code, in the order of how far the best attempt came:
 no-start-converged, singular-coordinates (most paths ran into one), guess-failed, not-refined,
 flow-failed, not-joined, not-verified, beyond-double (round-off exceeds the tolerance), too-long (for
 --max-length); "message" says more and what to try.
+The label "abnormal" is of a path that the constraints alone make an extremal: no momentum leads along
+it, and "p0" is null.
 A coordinate of an end that is * is free: its momentum vanishes there. What was found is
 "from_found" and "to_found" in the JSON, the largest such momentum "transversality_error".
 With limits, "limits" in the JSON has the closest approach to each ("lowest_slack"), when the path

@@ -70,7 +70,7 @@ std::vector<std::string> geodesic_row(const Geodesic& geodesic,
     for (const LimitReport& limit : geodesic.limits) slack = std::min(slack, limit.lowest_slack);
     row.push_back(text_number(slack, 2));
   }
-  row.push_back(text_vector(geodesic.p0, 8));
+  row.push_back(geodesic.label == Label::kAbnormal ? "-" : text_vector(geodesic.p0, 8));
   return row;
 }
 

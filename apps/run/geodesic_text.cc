@@ -31,6 +31,8 @@ const char* name_of(Label label) {
       return "singular";
     case Label::kUnknown:
       return "unknown";
+    case Label::kAbnormal:
+      return "abnormal";
   }
   return "unknown";
 }
@@ -61,8 +63,9 @@ Json problem_json(const std::vector<std::string>& arguments, const Run& run, con
 void add_extremal(const Geodesic& geodesic, const Ends& ends, Json& json) {
   const bool single = geodesic.verification == Verification::kSingle;
   const bool knots = geodesic.verification == Verification::kKnots;
-  json["p0"] = geodesic.p0;
-  json["lambda0"] = geodesic.lambda0;
+  const bool driven = geodesic.label != Label::kAbnormal;
+  json["p0"] = driven ? Json(geodesic.p0) : Json(nullptr);
+  json["lambda0"] = driven ? Json(geodesic.lambda0) : Json(nullptr);
   json["action"] = geodesic.action;
   json["length"] = or_null(geodesic.length);
   json["verification"] = name_of(geodesic.verification);

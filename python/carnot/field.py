@@ -14,7 +14,7 @@ from carnot.values import Array, Value
 if TYPE_CHECKING:
     from carnot.scene import Scene
 
-LABELS = np.array(["locally-minimal", "conjugate-passed", "singular", "unknown", ""])
+LABELS = np.array(["locally-minimal", "conjugate-passed", "singular", "unknown", "abnormal", ""])
 
 
 def labels_of(codes: Array) -> npt.NDArray[np.str_]:

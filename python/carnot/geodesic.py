@@ -42,7 +42,7 @@ class Geodesic(Value):
     start: Array
     goal: Array
     time: float
-    p0: Array
+    p0: Array  #: NaN where the label is "abnormal": no momentum leads along it
     lambda0: Array
     action: float
     length: Optional[float]  #: None where the scene has no mass matrix
@@ -52,7 +52,7 @@ class Geodesic(Value):
     constraint_error: float
     energy_drift: float
     conjugate_times: Optional[Array]  #: in (0, T], by multiplicity; None if they are not known
-    label: str  #: "locally-minimal", "conjugate-passed", "singular" or "unknown"
+    label: str  #: "locally-minimal", "conjugate-passed", "singular", "abnormal" or "unknown"
     abnormal: Optional[bool]
     morse_index: Optional[int]
     family_dimension: Optional[int]
@@ -196,6 +196,11 @@ def error_of(one: dict[str, Any]) -> float:
     return number(one[kind[one["verification"]]])
 
 
+def _numbers_or_nan(x: Any, n: int) -> Array:
+    """The numbers of JSON, n; NaN where it has none."""
+    return np.full(n, np.nan) if x is None else array(x)
+
+
 def _geodesic_of(
     scene: Scene, json: dict[str, Any], one: dict[str, Any], trajectory: dict[str, Array]
 ) -> Geodesic:
@@ -210,8 +215,8 @@ def _geodesic_of(
         start=array(one.get("from_found", json["from"])),
         goal=goal,
         time=float(json["time"]),
-        p0=array(one["p0"]),
-        lambda0=array(one["lambda0"]),
+        p0=_numbers_or_nan(one["p0"], trajectory["p"].shape[1]),
+        lambda0=_numbers_or_nan(one["lambda0"], trajectory["multipliers"].shape[1]),
         action=float(one["action"]),
         length=None if length is None else float(length),
         verification=one["verification"],

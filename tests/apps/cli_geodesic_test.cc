@@ -10,6 +10,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 Words parking(const Words& more) {
@@ -128,6 +129,46 @@ TEST(GeodesicCommand, FailureHasACode) {
   EXPECT_EQ(json["reason"], "too-long");
   EXPECT_THAT(json["message"].get<std::string>(), HasSubstr("larger --max-length"));
   EXPECT_TRUE(json["geodesics"].empty());
+}
+
+// On the line y = 0 of a metric that changes across it no momentum leads along the shortest path.
+TEST(GeodesicCommand, SaysThatAPathIsStrictlyAbnormal) {
+  const Words words{"geodesic",
+                    CARNOT_SOURCE_DIR "/docs/examples/scenes/martinet-perturbed.scene",
+                    "--set",
+                    "alpha=0.3",
+                    "--set",
+                    "beta=0.2",
+                    "--set",
+                    "gamma=0",
+                    "--from",
+                    "0,0,0",
+                    "--to=-1,0,0"};
+  const Outcome table = run(words);
+  EXPECT_EQ(table.status, 0) << table.err;
+  EXPECT_THAT(table.out, HasSubstr("abnormal  -\n"));
+  EXPECT_THAT(table.out, HasSubstr("strictly abnormal"));
+  EXPECT_THAT(table.out + table.err, Not(HasSubstr("--starts")));
+  const auto json = run(with(words, {"--json", "--samples", "3"})).json();
+  EXPECT_EQ(json["status"], "converged");
+  EXPECT_TRUE(json["reason"].is_null());
+  EXPECT_TRUE(json["missed_estimate"].is_null());
+  ASSERT_EQ(json["geodesics"].size(), 1);
+  const auto& line = json["geodesics"][0];
+  EXPECT_EQ(line["label"], "abnormal");
+  EXPECT_EQ(line["abnormal"], true);
+  EXPECT_NEAR(line["length"].get<double>(), 1, 1e-12);
+  EXPECT_NEAR(line["action"].get<double>(), 0.5, 1e-12);
+  for (const char* key : {"p0", "lambda0", "conjugate_times", "morse_index", "energy_drift"}) {
+    EXPECT_TRUE(line[key].is_null()) << key;
+  }
+  EXPECT_NEAR(line["trajectory"]["q"][1][0].get<double>(), -0.5, 1e-12);
+  EXPECT_EQ(line["trajectory"]["p"][1].dump(), "[null,null,null]");
+  Words along = words;
+  along[0] = "continue";
+  const Outcome followed = run(with(along, {"--along", "to=-2,0,0"}));
+  EXPECT_EQ(followed.status, 1);
+  EXPECT_THAT(followed.err, HasSubstr("not on one curve (abnormal"));
 }
 
 // A whole turn is no way at all where angles agree modulo 2 pi.

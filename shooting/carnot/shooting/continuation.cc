@@ -186,6 +186,12 @@ ContinuationReport continue_geodesic(const ProblemLine& asked,
   original.validate();
   asked.at(1).validate();
   check_start(original, start);
+  if (start.label == Label::kAbnormal) {
+    ContinuationReport report;
+    report.status = ContinuationStatus::kSingular;
+    report.message = message_of(report);
+    return report;
+  }
   const auto follow = original.limits.empty() ? follow_curves : follow_with_limits;
   BoundaryValueProblem unlimited = original;
   unlimited.limits.clear();

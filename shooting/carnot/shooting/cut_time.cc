@@ -136,6 +136,7 @@ class CutSearch {
     const BoundaryValueProblem problem = ray_.problem(t, steps);
     GeodesicOptions search;
     search.samples = 0;
+    search.abnormal = false;
     search.mod_angles = options_.mod_angles;
     search.threads = options_.threads;
     search.progress = [this](double) { return go_on(); };

@@ -16,6 +16,7 @@
 #include "carnot/shooting/problem/origin.h"
 #include "carnot/shooting/problem/rescaled.h"
 #include "carnot/shooting/problem/windings.h"
+#include "carnot/shooting/search/abnormal_search.h"
 #include "carnot/shooting/search/deadline.h"
 #include "carnot/shooting/search/failure.h"
 #include "carnot/shooting/search/limited_search.h"
@@ -125,7 +126,8 @@ void finish(const BoundaryValueProblem& problem, const NaturalScales& scales, Ex
   Geodesic& geodesic = extremal.geodesic;
   put_in_own_units(problem, scales, geodesic);
   Knots& knots = extremal.knots;
-  for (int i = 0; i <= knots.segments; ++i) {
+  const bool abnormal = geodesic.label == Label::kAbnormal;
+  for (int i = 0; i <= knots.segments && !abnormal; ++i) {
     for (int j = 0; j < knots.dof; ++j) {
       knots.at(i)[j] *= scales.q[j];
       knots.at(i)[knots.dof + j] *= scales.momentum(j);
@@ -134,10 +136,16 @@ void finish(const BoundaryValueProblem& problem, const NaturalScales& scales, Ex
   // What was asked for is answered to the last digit.
   for (int j = 0; j < problem.dynamics.dof; ++j) {
     if (problem.is_free_from(j)) continue;
-    knots.at(0)[j] = problem.from[j];
+    if (!abnormal) knots.at(0)[j] = problem.from[j];
     if (!geodesic.trajectory.q.empty()) geodesic.trajectory.q.front()[j] = problem.from[j];
   }
-  measure_errors(problem, extremal);
+  if (abnormal) {
+    std::vector<double> end = extremal.path.back();
+    for (std::size_t j = 0; j < end.size(); ++j) end[j] *= scales.q[j];
+    geodesic.endpoint_error = endpoint_error(problem, end.data());
+  } else {
+    measure_errors(problem, extremal);
+  }
 }
 
 // What the searches for all images of the target gave.
@@ -179,8 +187,21 @@ void search_image(const NaturalScales& scales, const GeodesicOptions& options, F
   found.converged += search.converged();
   found.blocked += search.blocked();
   found.timed_out = search.timed_out();
+  std::optional<double> only;  // the length of a strictly abnormal curve that is not listed
+  if (options.guess.empty() && found.finished) {
+    if (auto abnormal = abnormal_extremal(problem, options, search)) {
+      const bool strictly = abnormal->geodesic.label == Label::kAbnormal;
+      if (strictly && !options.abnormal) {
+        only = scales.length() * *abnormal->geodesic.length;
+      } else {
+        found.list.push_back(std::move(*abnormal));
+        found.list.back().image = image;
+        found.counted = false;
+      }
+    }
+  }
   if (found.list.empty() && found.failure.reason == Reason::kNone) {
-    found.failure = explain_failure(problem, scales, search, options);
+    found.failure = only ? only_abnormal(*only) : explain_failure(problem, scales, search, options);
   }
 }
 
@@ -231,6 +252,9 @@ GeodesicReport find_without_limits(const BoundaryValueProblem& asked,
   if (found.counted) report.missed_estimate = missed_estimate(found.hits);
   report.status = list.empty() ? GeodesicStatus::kNotConverged : GeodesicStatus::kConverged;
   if (found.blocked > 0) report.message = blocked_starts(found.blocked, found.starts);
+  if (!list.empty() && report.geodesics.front().label == Label::kAbnormal) {
+    report.message = least_is_abnormal();
+  }
   if (list.empty()) {
     report.reason = found.failure.reason;
     report.message = found.failure.message;
@@ -310,6 +334,7 @@ GeodesicReport find_with_limits(const BoundaryValueProblem& asked, const Geodesi
   // A few starts tell whether the least action is beyond a limit. Only where it is not must it be
   // known for sure: then it is the answer.
   GeodesicOptions all_starts = options;
+  all_starts.abnormal = false;                        // those are not followed along limits
   const long stride = dense_stride(options.samples);  // paths are judged at many times
   all_starts.samples = stride * std::max(1L, options.samples - 1) + 1;
   GeodesicOptions few = all_starts;

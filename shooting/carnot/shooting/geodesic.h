@@ -13,7 +13,9 @@ namespace carnot {
 // kSingle: one integration from p0. kKnots: piece by piece. kGrid: no integration keeps to a limit
 // there; the path is that of the grid.
 enum class Verification { kSingle, kKnots, kGrid };
-enum class Label { kLocallyMinimal, kConjugatePassed, kSingular, kUnknown };
+// kAbnormal: strictly abnormal, an extremal by the constraints alone. No momentum leads along it:
+// p0, lambda0, energy_drift and those of the trajectory are NaN.
+enum class Label { kLocallyMinimal, kConjugatePassed, kSingular, kUnknown, kAbnormal };
 
 // How a path keeps to a limit.
 struct LimitReport {

@@ -32,6 +32,8 @@ const char* name_of(Reason reason) {
       return "beyond-double";
     case Reason::kTooLong:
       return "too-long";
+    case Reason::kOnlyAbnormal:
+      return "only-abnormal";
   }
   return "none";
 }

@@ -19,6 +19,7 @@ enum class Reason {
   kNotVerified,          // an independent integration misses the target, by more than round-off
   kBeyondDouble,         // round-off is larger than the tolerance, or than the target is far
   kTooLong,              // all that were found are longer than max_length
+  kOnlyAbnormal,         // nothing but a strictly abnormal curve, which has no momentum
 };
 
 // "no-start-converged" and so on; "none".

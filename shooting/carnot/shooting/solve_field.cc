@@ -155,6 +155,7 @@ class FieldSolver {
     search.count = 1;
     search.all = false;
     search.samples = 0;
+    search.abnormal = false;  // momenta are what a field is made of
     search.threads = 1;
     search.seed = seed;
     search.progress = [this](double) { return go_on(); };

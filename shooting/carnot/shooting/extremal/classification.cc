@@ -22,26 +22,12 @@ double doubt_of(const BoundaryValueProblem& problem, const Geodesic& geodesic) {
   return distance > 0 ? std::max(kLeast, kMargin * geodesic.endpoint_error / distance) : kLeast;
 }
 
-// The largest |value(q)| along the path: the top of the parabola through the largest sample and its
-// neighbours.
 void add_extremes(const BoundaryValueProblem& problem,
                   const Knots& knots,
                   long steps,
                   Geodesic& geodesic) {
   if (problem.dynamics.info.extremes.empty()) return;
-  const Trajectory fine = survey(problem, knots, steps, 2 * steps + 1).trajectory;
-  for (const Extreme& extreme : problem.dynamics.info.extremes) {
-    std::vector<double> size;
-    for (const auto& q : fine.q) size.push_back(std::abs(extreme.value(q.data())));
-    const auto top = std::max_element(size.begin(), size.end());
-    double largest = *top;
-    if (top != size.begin() && top + 1 != size.end()) {
-      const double bend = top[-1] - 2 * top[0] + top[1];
-      const double slope = 0.5 * (top[1] - top[-1]);
-      if (bend < 0) largest -= 0.5 * slope * slope / bend;
-    }
-    geodesic.extremes.emplace_back(extreme.name, largest);
-  }
+  set_extremes(problem, survey(problem, knots, steps, 2 * steps + 1).trajectory.q, geodesic);
 }
 
 // Whether T is conjugate because the extremal is one of a continuum. Then a step along each
@@ -135,6 +121,23 @@ void set_label(const BoundaryValueProblem& problem,
 
 }  // namespace
 
+void set_extremes(const BoundaryValueProblem& problem,
+                  const std::vector<std::vector<double>>& nodes,
+                  Geodesic& geodesic) {
+  for (const Extreme& extreme : problem.dynamics.info.extremes) {
+    std::vector<double> size;
+    for (const auto& q : nodes) size.push_back(std::abs(extreme.value(q.data())));
+    const auto top = std::max_element(size.begin(), size.end());
+    double largest = *top;
+    if (top != size.begin() && top + 1 != size.end()) {
+      const double bend = top[-1] - 2 * top[0] + top[1];
+      const double slope = 0.5 * (top[1] - top[-1]);
+      if (bend < 0) largest -= 0.5 * slope * slope / bend;
+    }
+    geodesic.extremes.emplace_back(extreme.name, largest);
+  }
+}
+
 const ConjugateTimes& conjugate_times_of(const BoundaryValueProblem& problem, Extremal& extremal) {
   if (!extremal.conjugate) extremal.conjugate = conjugate_times_along(problem, extremal, {});
   return *extremal.conjugate;
@@ -149,6 +152,7 @@ void label(const BoundaryValueProblem& problem, Extremal& extremal) {
 
 void complete(const BoundaryValueProblem& problem, long samples, Extremal& extremal) {
   Geodesic& geodesic = extremal.geodesic;
+  if (geodesic.label == Label::kAbnormal) return;
   const long steps = geodesic.plan.count;
   add_extremes(problem, extremal.knots, steps, geodesic);
   if (samples > 0) geodesic.trajectory = survey(problem, extremal.knots, steps, samples).trajectory;

@@ -1,12 +1,20 @@
 // What is said of an extremal that is going to be returned: samples, conjugate times, label.
 #pragma once
 
+#include <vector>
+
 #include "carnot/shooting/extremal/verification.h"
 
 namespace carnot::internal {
 
+// The largest |value(q)| along the nodes of a path, for each extreme of the scene: the top of the
+// parabola through the largest one and its neighbours.
+void set_extremes(const BoundaryValueProblem& problem,
+                  const std::vector<std::vector<double>>& nodes,
+                  Geodesic& geodesic);
+
 // Fills trajectory (`samples` times), extremes, conjugate times, Morse index, label, abnormal and
-// family dimension, as far as they can be known.
+// family dimension, as far as they can be known. A strictly abnormal curve has them already.
 void complete(const BoundaryValueProblem& problem, long samples, Extremal& extremal);
 
 // The same without samples. Conjugate times are counted and not located, which is faster where

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <tuple>
 
 namespace carnot::internal {
@@ -23,7 +24,8 @@ void rank_items(std::vector<Item>& list) {
     });
     std::sort(first, last, [](const Item& a, const Item& b) {
       const auto key = [](const Geodesic& g) {
-        return std::tie(g.verification, g.p0);  // kSingle is first
+        // Normal ones before strictly abnormal ones, which have no p0; kSingle is first.
+        return std::make_tuple(g.label == Label::kAbnormal, g.verification, std::cref(g.p0));
       };
       return key(geodesic_of(a)) < key(geodesic_of(b));
     });

@@ -15,7 +15,6 @@
 namespace carnot::internal {
 namespace {
 
-constexpr int kPathIntervals = 32;
 constexpr long kMaxSteps = 4096;
 constexpr double kAsFarAsItGoes = 1e-14;  // no scaled jumps are smaller
 
@@ -92,13 +91,11 @@ struct Demand {
   double allowed;  // by the check, at the end or at a knot
 };
 
-// Near targets ask for digits relative to the distance.
 Demand demand_of(const BoundaryValueProblem& problem, double tolerance) {
   constexpr double kFiner = 1e-3;  // the aim over the tolerance
-  constexpr double kPart = 1e-3;   // of the distance: a path that misses by more goes elsewhere
   const double distance = distance_between_ends(problem);
-  if (!(distance > 0)) return {kFiner * tolerance, tolerance};
-  return {kFiner * tolerance * std::min(1.0, distance), std::min(tolerance, kPart * distance)};
+  const double aim = kFiner * tolerance;
+  return {distance > 0 ? aim * std::min(1.0, distance) : aim, allowed_error(problem, tolerance)};
 }
 
 // From the start alone. False where a flow of twice as many steps does not arrive.
@@ -171,6 +168,12 @@ bool measure(const BoundaryValueProblem& problem, long steps, Extremal& extremal
 }
 
 }  // namespace
+
+double allowed_error(const BoundaryValueProblem& problem, double tolerance) {
+  constexpr double kPart = 1e-3;  // of the distance: a path that misses by more goes elsewhere
+  const double distance = distance_between_ends(problem);
+  return distance > 0 ? std::min(tolerance, kPart * distance) : tolerance;
+}
 
 Outcome verify(const BoundaryValueProblem& problem, Knots knots, long steps, double tolerance) {
   const Demand demand = demand_of(problem, tolerance);

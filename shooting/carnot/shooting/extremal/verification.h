@@ -19,10 +19,13 @@ namespace carnot::internal {
 // Equal actions, such as those of mirror partners, differ by less than this, relative.
 inline constexpr double kSameAction = 1e-9;
 
+// The intervals of the path that tells an extremal from others.
+inline constexpr int kPathIntervals = 32;
+
 // A verified extremal, its knots, and where it is at equidistant times to tell it from others.
 struct Extremal {
   Geodesic geodesic;
-  Knots knots;
+  Knots knots;  // none where it is strictly abnormal
   std::vector<std::vector<double>> path;
   bool singular = false;  // dq(T)/dp0 is singular: a member of a family, or abnormal
   std::optional<ConjugateTimes> conjugate;  // where they have been asked for
@@ -34,6 +37,9 @@ struct Outcome {
   std::optional<Extremal> extremal;
   Reason reason = Reason::kNone;  // kNone where there is an extremal
 };
+
+// By how much the check may miss the target: near targets ask for digits relative to the distance.
+double allowed_error(const BoundaryValueProblem& problem, double tolerance);
 
 // `steps` is where the search for a step begins.
 Outcome verify(const BoundaryValueProblem& problem, Knots knots, long steps, double tolerance);

@@ -525,10 +525,10 @@ BoundaryValueProblem rescaled(const BoundaryValueProblem& problem, const Natural
 void put_in_own_units(const NaturalScales& scales, Geodesic& geodesic) {
   const int n = static_cast<int>(scales.q.size());
   const auto put_q = [&](std::vector<double>& q) {
-    for (int j = 0; j < n; ++j) q[j] *= scales.q[j];
+    for (std::size_t j = 0; j < q.size(); ++j) q[j] *= scales.q[j];
   };
   const auto put_p = [&](std::vector<double>& p) {
-    for (int j = 0; j < n; ++j) p[j] *= scales.momentum(j);
+    for (std::size_t j = 0; j < p.size(); ++j) p[j] *= scales.momentum(static_cast<int>(j));
   };
   const auto put_lambda = [&](std::vector<double>& lambda) {
     for (std::size_t i = 0; i < lambda.size(); ++i) lambda[i] *= scales.multipliers[i];

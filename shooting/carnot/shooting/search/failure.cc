@@ -140,6 +140,19 @@ std::string blocked_starts(int blocked, int starts) {
          "other coordinates";
 }
 
+Failure only_abnormal(double length) {
+  return {Reason::kOnlyAbnormal,
+          "the shortest path that was found, of length " + text_of(length) +
+              ", is strictly abnormal: no momentum leads along it; a target beside it may have a "
+              "geodesic with one"};
+}
+
+std::string least_is_abnormal() {
+  return "the first is strictly abnormal: the constraints alone make it an extremal, and no "
+         "momentum "
+         "leads along it";
+}
+
 Failure explain_failure(const BoundaryValueProblem& problem,
                         const NaturalScales& scales,
                         const Search& search,

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "carnot/numerics/parallel.h"
+#include "carnot/shooting/extremal/abnormal_curve.h"
 #include "carnot/shooting/extremal/classification.h"
 #include "carnot/shooting/extremal/ranking.h"
 #include "carnot/shooting/search/polish.h"
@@ -34,7 +35,8 @@ Search::Search(const BoundaryValueProblem& problem, const GeodesicOptions& optio
       policy_(
           options, problem.dynamics.forced == 0 || problem.dynamics.on_leaves, near_.has_value()),
       extremals_(partners_for(problem, options, policy_)),
-      discrete_(problem) {
+      discrete_(problem),
+      seeks_abnormal_(may_have_abnormal_curves(problem)) {
   if (problem.dynamics.has_transcription()) return;
   if (problem.dynamics.forced > 0 && !problem.dynamics.on_leaves) return;
   drift_.emplace(problem, options.seed);

@@ -50,6 +50,10 @@ class Search {
   [[nodiscard]] const Path* nearest_discrete() const { return discrete_.least(); }
   // The least residual that a path was tightened to, relative to its momenta.
   [[nodiscard]] double least_residual() const { return least_residual_; }
+  // Whether there may be abnormal curves; and the least action of paths that were pulled tight and
+  // of which Newton's method made no discrete extremals (abnormal_search.h).
+  [[nodiscard]] bool seeks_abnormal() const { return seeks_abnormal_; }
+  [[nodiscard]] double least_relaxed() const { return least_relaxed_; }
 
  private:
   static constexpr int kSegments = 8;      // of multiple shooting; divides the intervals of a path
@@ -71,8 +75,10 @@ class Search {
   void momentum_round(int count);
   // Shoots along the straight line. This helps where paths are relaxed to another target.
   void shoot_straight();
-  // Newton's method on the grid did not make discrete extremals of some relaxed paths. Shoots along
-  // the one of least action among these. Where one geodesic is wanted and there is one, that is not
+  // Newton's method on the grid did not make discrete extremals of some relaxed paths. Remembers the
+  // least action of these where there may be abnormal curves.
+  void note_relaxed(const std::vector<RelaxedStart>& starts);
+  // Shoots along the one of least action among these. Where one geodesic is wanted and there is one, that is not
   // worth its time: a fifth of that of a search (vehicle, 60 random targets).
   void shoot_along_relaxed(const std::vector<RelaxedStart>& starts);
   // Goes down from the best extremal, which is no minimum. False where that gives nothing better.
@@ -112,6 +118,8 @@ class Search {
   SearchTally tally_;
   Reason furthest_ = Reason::kNone;
   double least_residual_ = std::numeric_limits<double>::infinity();
+  bool seeks_abnormal_;
+  double least_relaxed_ = std::numeric_limits<double>::infinity();
   int stiffness_ = 0;      // how often most starts of a round had to raise the penalty
   int intervals_ = 32;     // of the grid that paths are relaxed on
   bool descends_ = false;  // the best extremal so far is no minimum

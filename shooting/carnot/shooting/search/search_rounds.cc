@@ -31,6 +31,23 @@ double energy_of(double length, double time) {
   return 0.5 * speed * speed;
 }
 
+// The path of least action among those that were relaxed and not tightened.
+struct LeastRelaxed {
+  const Path* path;
+  double action;
+};
+std::optional<LeastRelaxed> least_of(const BoundaryValueProblem& problem,
+                                     const std::vector<RelaxedStart>& starts) {
+  std::optional<LeastRelaxed> least;
+  for (const RelaxedStart& start : starts) {
+    if (start.found || !start.relaxed) continue;
+    const double h = problem.time / start.path.intervals;
+    const double action = discrete_action(problem.dynamics, h, start.path);
+    if (!least || action < least->action) least = {&start.path, action};
+  }
+  return least;
+}
+
 }  // namespace
 
 void Search::relax_round(int count) {
@@ -42,6 +59,7 @@ void Search::relax_round(int count) {
   });
   tally_.drawn += count;
   const Polished polished = absorb(starts);
+  if (seeks_abnormal_) note_relaxed(starts);
   if (extremals_.empty() || policy_.wants_more()) shoot_along_relaxed(starts);
   const bool artefacts = polished.failed >= kArtefacts && polished.failed > polished.good;
   int stiffer = 0;
@@ -71,18 +89,15 @@ void Search::shoot_straight() {
   take(shoot_along(problem_, options_, line).extremal);
 }
 
-void Search::shoot_along_relaxed(const std::vector<RelaxedStart>& starts) {
-  const Path* least = nullptr;
-  double least_action = std::numeric_limits<double>::infinity();
-  for (const RelaxedStart& start : starts) {
-    if (start.found || !start.relaxed) continue;
-    const double h = problem_.time / start.path.intervals;
-    const double action = discrete_action(problem_.dynamics, h, start.path);
-    if (!(action < least_action)) continue;
-    least = &start.path;
-    least_action = action;
+void Search::note_relaxed(const std::vector<RelaxedStart>& starts) {
+  if (const auto least = least_of(problem_, starts)) {
+    least_relaxed_ = std::min(least_relaxed_, least->action);
   }
-  if (least != nullptr) take(shoot_along(problem_, options_, *least).extremal);
+}
+
+void Search::shoot_along_relaxed(const std::vector<RelaxedStart>& starts) {
+  const auto least = least_of(problem_, starts);
+  if (least) take(shoot_along(problem_, options_, *least->path).extremal);
 }
 
 bool Search::descend_round() {

@@ -60,6 +60,7 @@ GeodesicOptions SteeringSearch::options_of_search(int count) const {
   search.seed = options_.seed;
   search.threads = options_.threads;
   search.samples = kSteeringSamples;
+  search.abnormal = false;  // momenta lead to the neighbours
   if (options_.goes_on) {
     search.progress = [this](double /*fraction*/) { return options_.goes_on(); };
   }
