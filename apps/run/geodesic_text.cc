@@ -33,6 +33,8 @@ const char* name_of(Label label) {
       return "unknown";
     case Label::kAbnormal:
       return "abnormal";
+    case Label::kNotMinimal:
+      return "not-minimal";
   }
   return "unknown";
 }

@@ -14,7 +14,9 @@ from carnot.values import Array, Value
 if TYPE_CHECKING:
     from carnot.scene import Scene
 
-LABELS = np.array(["locally-minimal", "conjugate-passed", "singular", "unknown", "abnormal", ""])
+LABELS = np.array(
+    ["locally-minimal", "conjugate-passed", "singular", "unknown", "abnormal", "not-minimal", ""]
+)
 
 
 def labels_of(codes: Array) -> npt.NDArray[np.str_]:

@@ -52,7 +52,8 @@ class Geodesic(Value):
     constraint_error: float
     energy_drift: float
     conjugate_times: Optional[Array]  #: in (0, T], by multiplicity; None if they are not known
-    label: str  #: "locally-minimal", "conjugate-passed", "singular", "abnormal" or "unknown"
+    #: "locally-minimal", "conjugate-passed", "singular", "abnormal", "not-minimal" or "unknown"
+    label: str
     abnormal: Optional[bool]
     morse_index: Optional[int]
     family_dimension: Optional[int]

@@ -14,8 +14,9 @@ namespace carnot {
 // there; the path is that of the grid.
 enum class Verification { kSingle, kKnots, kGrid };
 // kAbnormal: strictly abnormal, an extremal by the constraints alone. No momentum leads along it:
-// p0, lambda0, energy_drift and those of the trajectory are NaN.
-enum class Label { kLocallyMinimal, kConjugatePassed, kSingular, kUnknown, kAbnormal };
+// p0, lambda0, energy_drift and those of the trajectory are NaN. kNotMinimal: Legendre's condition
+// fails, so that quick wiggles lower the action.
+enum class Label { kLocallyMinimal, kConjugatePassed, kSingular, kUnknown, kAbnormal, kNotMinimal };
 
 // How a path keeps to a limit.
 struct LimitReport {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "carnot/shooting/extremal/conjugate_times.h"
+#include "carnot/shooting/extremal/legendre.h"
 #include "carnot/shooting/path/path.h"
 #include "carnot/shooting/problem/ends.h"
 #include "carnot/shooting/shoot/end_point.h"
@@ -85,6 +86,11 @@ ConjugateTimes conjugate_times_along(const BoundaryValueProblem& problem,
   if (passes_singularity(problem, extremal)) return {};
   options.doubt = doubt_of(problem, extremal.geodesic);
   const long steps = extremal.geodesic.plan.count / 2;
+  if (!satisfies_legendre(problem, extremal.knots, steps)) {
+    ConjugateTimes none;
+    none.legendre = false;
+    return none;
+  }
   return conjugate_times(problem, extremal.knots, steps, options);
 }
 
@@ -93,6 +99,7 @@ void set_label(const BoundaryValueProblem& problem,
                const ConjugateTimes& conjugate,
                Geodesic& geodesic) {
   if (conjugate.corank) geodesic.abnormal = *conjugate.corank > problem.dynamics.forced;
+  if (!conjugate.legendre) geodesic.label = Label::kNotMinimal;
   if (!conjugate.known) return;
   // Where the target is free it is not T as a conjugate time that counts, but what moving the
   // target does to the action.

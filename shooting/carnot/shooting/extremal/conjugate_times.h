@@ -45,6 +45,7 @@ struct ConjugateTimes {
   int at_end = 0;                    // how many of them are T
   std::optional<int> corank;         // n - the generic rank of X; > 0: abnormal
   std::optional<TargetForm> target;  // where coordinates of the target are free
+  bool legendre = true;              // false where they mean nothing, see legendre.h
 };
 
 struct ConjugateTimesOptions {
