@@ -61,6 +61,44 @@ TEST(HolonomicSearch, AgreesWithRattle) {
   EXPECT_EQ(found.geodesics[0].label, Label::kLocallyMinimal);
 }
 
+// The same extremals by RATTLE, whose tangents are those of the manifold itself.
+void expect_the_same_labels(const std::string& scene,
+                            const apps::ParameterValues& parameters,
+                            const std::vector<double>& from,
+                            const std::vector<double>& to,
+                            double time) {
+  GeodesicOptions options;
+  options.count = 3;
+  const GeodesicReport found =
+      find_geodesics({make_dynamics(text(scene).with(parameters)), from, to, time}, options);
+  const Dynamics rattle = apps::find_scene(scene).make(parameters, "rattle6");
+  ASSERT_GE(found.geodesics.size(), 2U) << scene;
+  for (const Geodesic& geodesic : found.geodesics) {
+    GeodesicOptions guess;
+    guess.guess = geodesic.p0;
+    const GeodesicReport known = find_geodesics({rattle, from, to, time}, guess);
+    ASSERT_FALSE(known.geodesics.empty()) << known.message;
+    const Geodesic& same = known.geodesics[0];
+    EXPECT_NEAR(same.action, geodesic.action, 1e-8 * (1 + std::abs(geodesic.action)));
+    EXPECT_EQ(same.label, geodesic.label);
+    EXPECT_EQ(same.abnormal, false);
+    EXPECT_EQ(same.morse_index, geodesic.morse_index);
+    ASSERT_TRUE(same.conjugate_times && geodesic.conjugate_times);
+    ASSERT_EQ(same.conjugate_times->size(), geodesic.conjugate_times->size());
+    for (std::size_t i = 0; i < same.conjugate_times->size(); ++i) {
+      EXPECT_NEAR((*same.conjugate_times)[i], (*geodesic.conjugate_times)[i], 1e-6 * time);
+    }
+  }
+}
+
+TEST(HolonomicSearch, RattleHasTheSameConjugateTimes) {
+  const double sine = std::sin(2.0);
+  const double cosine = std::cos(2.0);
+  expect_the_same_labels("spherical-pendulum", {{"gravity", 0}}, {1, 0, 0}, {cosine, sine, 0}, 1);
+  expect_the_same_labels("spherical-pendulum", {}, {0, 0.6, -0.8}, {0.6, 0, -0.8}, 6);
+  expect_the_same_labels("rod-skate", {}, {0, 0, 1, 0}, {0.5, 1, 0.5, 2}, 1);
+}
+
 TEST(HolonomicSearch, DiscreteExtremalsStayOnTheManifold) {
   // h is of second order, so Dh (q_i + q_{i+1}) / 2 times the step is its change.
   const BoundaryValueProblem problem{

@@ -82,7 +82,6 @@ bool passes_singularity(const BoundaryValueProblem& problem, const Extremal& ext
 ConjugateTimes conjugate_times_along(const BoundaryValueProblem& problem,
                                      const Extremal& extremal,
                                      ConjugateTimesOptions options) {
-  if (problem.dynamics.forced > 0 && !problem.dynamics.on_leaves) return {};
   if (passes_singularity(problem, extremal)) return {};
   options.doubt = doubt_of(problem, extremal.geodesic);
   const long steps = extremal.geodesic.plan.count / 2;

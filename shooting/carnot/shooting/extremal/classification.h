@@ -21,8 +21,7 @@ void complete(const BoundaryValueProblem& problem, long samples, Extremal& extre
 // there are many.
 void label(const BoundaryValueProblem& problem, Extremal& extremal);
 
-// The conjugate times of the extremal, computed once. They are unknown where holonomic constraints
-// need forces, since momenta along the rows of Dh then move nothing.
+// The conjugate times of the extremal, computed once.
 const ConjugateTimes& conjugate_times_of(const BoundaryValueProblem& problem, Extremal& extremal);
 
 }  // namespace carnot::internal

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <utility>
+#include <vector>
 
 #include "carnot/numerics/linear_algebra.h"
 #include "carnot/shooting/linear/dense.h"
@@ -21,6 +22,35 @@ using Eigen::VectorXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr double kTurn = 2 * std::numbers::pi;
+
+// The directions Dh' at a phase point, orthonormal: vectors (a, 0) that are normal to the manifold
+// {h = 0, Dh H_p = 0}.
+MatrixXd normals_at(const Dynamics& dynamics, double t, const std::vector<double>& z) {
+  const int n = dynamics.dof;
+  RowMajor projector(2 * n, 2 * n);
+  if (!dynamics.tangent_projector(t, z, span_of(projector))) {
+    projector.setConstant(std::nan(""));
+  }
+  return right_singular(projector.leftCols(n)).vectors.rightCols(dynamics.forced);
+}
+
+// Advances z and gives the matrix that carries a plane with it.
+//
+// RATTLE maps (0, Dh') to zero and all else into the tangent space of the manifold. There planes of
+// half its dimension are Lagrangian for the form of the manifold, and with (0, Dh') at the same
+// point they are Lagrangian in R^2n, for Dh dq = 0. So (0, Dh') at the start is mapped to (0, Dh')
+// at the end, by which as many phases as there are forces stay at 0.
+bool carry(const Dynamics& dynamics, const StepPlan& plan, std::vector<double>& z, RowMajor& m) {
+  const bool on_manifold = dynamics.forced > 0 && !dynamics.on_leaves;
+  MatrixXd before;
+  if (on_manifold) before = normals_at(dynamics, plan.start, z);
+  if (!dynamics.tangent_flow(plan, z, span_of(m)).completed()) return false;
+  if (!on_manifold) return true;
+  const int n = dynamics.dof;
+  const MatrixXd after = normals_at(dynamics, plan.end, z);
+  m.bottomRightCorner(n, n) += product(after, before.transpose());
+  return m.allFinite();
+}
 
 // A phase point and the plane over it, in the units of a short extremal and balanced coordinates
 // (S^-1 X; S'P).
@@ -101,7 +131,7 @@ class Planes {
     to.t = t;
     to.z = from.z;
     const StepPlan plan = StepPlan::equal(from.t, t - from.t, 1);
-    if (!dynamics_.tangent_flow(plan, to.z, span_of(m)).completed()) return false;
+    if (!carry(dynamics_, plan, to.z, m)) return false;
     MatrixXd carried = from.plane;
     carried.topRows(n) = product(s_, carried.topRows(n));
     carried.bottomRows(n) = product(inverse_, carried.bottomRows(n));
@@ -196,7 +226,7 @@ std::optional<Graph> typical_graph(double begin,
       const double t = i * piece + static_cast<double>(j) * h;
       RowMajor m(2 * n, 2 * n);
       const StepPlan plan = StepPlan::equal(t, h, 1);
-      if (!problem.dynamics.tangent_flow(plan, z, span_of(m)).completed()) return std::nullopt;
+      if (!carry(problem.dynamics, plan, z, m)) return std::nullopt;
       plane = orthonormal(product(units.map(m), plane));
       if (t + h < first) continue;
       Graph next = graph_of(plane);
@@ -253,7 +283,8 @@ ConjugateTimes follow(double fraction,
   const int n = problem.dynamics.dof;
   ConjugateTimes result;
   const std::optional<Graph> graph = balance_of(fraction, problem, units, knots, steps);
-  if (!graph || (graph->kernel > 0 && !units.scaled() && !tells_kernels(knots))) return result;
+  const int known = problem.dynamics.forced;  // momenta along Dh move nothing
+  if (!graph || (graph->kernel > known && !units.scaled() && !tells_kernels(knots))) return result;
   result.corank = graph->kernel;
   if (graph->kernel == n) return result;
   const Planes planes(problem.dynamics, units, graph->balance, graph->kernel, options.precision);
