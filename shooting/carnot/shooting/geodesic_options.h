@@ -25,8 +25,8 @@ struct GeodesicOptions {
   bool mod_angles = false;           // angles need to agree modulo their periods only
   // p0 to start from instead of paths, with q_j(0) for free coordinates; empty: none.
   std::vector<double> guess;
-  // Whether a strictly abnormal curve, which has no p0, is listed where it is shorter than all else.
-  // Where not, and there is nothing else, the reason is kOnlyAbnormal.
+  // Whether a strictly abnormal curve, which has no p0, is listed where it is shorter than all
+  // else. Where not, and there is nothing else, the reason is kOnlyAbnormal.
   bool abnormal = true;
   std::uint64_t seed = 0;
   int threads = 0;  // 0: all cores
