@@ -119,7 +119,7 @@ TEST(FreeEnds, AreTheSameByEveryMinimiserAndFromBothSides) {
 }
 
 TEST(FreeEnds, NeverCostMoreThanFixedOnes) {
-  constexpr int kTargets = 20;
+  constexpr int kTargets = 100;
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> uniform(-2, 2);
   for (int i = 0; i < kTargets; ++i) {
