@@ -276,7 +276,7 @@ Extremal extremal_of(const BoundaryValueProblem& problem,
   geodesic.plan = StepPlan::equal(0, problem.time, 2 * curve.steps);
   Traveller traveller(problem, curve.sign);
   // The configurations at so many equidistant times.
-  const auto nodes = [&](long times) {
+  const auto configurations = [&](long times) {
     MatrixXd state = start_of(problem, curve.covector);
     std::vector<std::vector<double>> nodes{problem.from};
     const long intervals = std::max(1L, times - 1);
@@ -290,12 +290,12 @@ Extremal extremal_of(const BoundaryValueProblem& problem,
     }
     return nodes;
   };
-  extremal.path = nodes(kPathIntervals + 1);
-  set_extremes(problem, nodes(2 * geodesic.plan.count + 1), geodesic);
+  extremal.path = configurations(kPathIntervals + 1);
+  set_extremes(problem, configurations(2 * geodesic.plan.count + 1), geodesic);
   if (samples > 0) {
     Trajectory& trajectory = geodesic.trajectory;
     trajectory.t = sample_times(StepPlan::equal(0, problem.time, 1), samples);
-    trajectory.q = nodes(samples);
+    trajectory.q = configurations(samples);
     if (samples == 1) trajectory.q = {extremal.path.back()};
     trajectory.p.assign(samples, geodesic.p0);
     trajectory.lambda.assign(samples, geodesic.lambda0);

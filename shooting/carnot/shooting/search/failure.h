@@ -24,8 +24,8 @@ Failure explain_failure(const BoundaryValueProblem& problem,
                         const Search& search,
                         const GeodesicOptions& options);
 
-// The same where nothing but a strictly abnormal curve of this length was found, and none is wanted;
-// and what there is to say where it is wanted and listed first.
+// The same where nothing but a strictly abnormal curve of this length was found, and none is
+// wanted; and what there is to say where it is wanted and listed first.
 Failure only_abnormal(double length);
 std::string least_is_abnormal();
 

@@ -75,11 +75,11 @@ class Search {
   void momentum_round(int count);
   // Shoots along the straight line. This helps where paths are relaxed to another target.
   void shoot_straight();
-  // Newton's method on the grid did not make discrete extremals of some relaxed paths. Remembers the
-  // least action of these where there may be abnormal curves.
+  // Newton's method on the grid did not make discrete extremals of some relaxed paths. Remembers
+  // the least action of these where there may be abnormal curves.
   void note_relaxed(const std::vector<RelaxedStart>& starts);
-  // Shoots along the one of least action among these. Where one geodesic is wanted and there is one, that is not
-  // worth its time: a fifth of that of a search (vehicle, 60 random targets).
+  // Shoots along the one of least action among these. Where one geodesic is wanted and there is
+  // one, that is not worth its time: a fifth of that of a search (vehicle, 60 random targets).
   void shoot_along_relaxed(const std::vector<RelaxedStart>& starts);
   // Goes down from the best extremal, which is no minimum. False where that gives nothing better.
   bool descend_round();
