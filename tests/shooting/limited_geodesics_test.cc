@@ -8,7 +8,6 @@
 #include <string>
 
 #include "carnot/make_limit.h"
-#include "carnot/scenes/vehicle.h"
 #include "carnot/shooting/find_geodesics.h"
 #include "carnot/shooting/path/interior_point.h"
 #include "carnot/shooting/path/refinement.h"
@@ -169,12 +168,30 @@ TEST(LimitedGeodesics, AgreeWithTheirGrid) {
   EXPECT_LE(geodesic.limit_violation, kViolation);
 }
 
+// The program's vehicle. A class of its own, so that what is compiled of it here does not take the
+// place of what is compiled, faster, of the program's.
+struct Car {
+  static constexpr int kDof = 4;
+  static constexpr int kMultipliers = 2;
+
+  template <class T>
+  Matrix<T, 4, 4> mass(const Vector<T, 4>& /*q*/) const {
+    return diagonal<T>(1, 1, 1, 1);
+  }
+  template <class T>
+  Matrix<T, 2, 4> constraints(const Vector<T, 4>& q) const {
+    using std::cos, std::sin;
+    Matrix<T, 2, 4> g;
+    g << sin(q[3]), -cos(q[3]), 0, 0, sin(q[2]), -cos(q[2]), 1, 0;
+    return g;
+  }
+};
+
 // With its scene a limit from C++ has arcs, and they are those of the text.
 TEST(LimitedGeodesics, AreExactWithScenesOfCpp) {
-  const scenes::Vehicle vehicle;
-  BoundaryValueProblem problem(make_dynamics(vehicle), {0, 0, 0, 0}, {0, 1, 0, 0});
+  BoundaryValueProblem problem(make_dynamics(Car{}), {0, 0, 0, 0}, {0, 1, 0, 0});
   problem.limits = {make_limit(
-      vehicle, "steering", [](const auto& q) { return q[3] - q[2]; }, -0.3, 0.3)};
+      Car{}, "steering", [](const auto& q) { return q[3] - q[2]; }, -0.3, 0.3)};
   const Geodesic geodesic = best(problem);
   EXPECT_EQ(geodesic.verification, Verification::kKnots);
   EXPECT_NEAR(geodesic.action, kParking, 1e-9 * kParking);
