@@ -212,7 +212,8 @@ TEST(ContinueCommand, MovesLimits) {
   EXPECT_EQ(change["before"].dump(), "[]");
   EXPECT_EQ(change["after"].dump(), R"(["phi-theta"])");
   EXPECT_NEAR(change["value"].get<double>(), 0.45727, 1e-4);
-  EXPECT_THAT(read_text(sandbox.directory() / "l.csv"), StartsWith("branch,s,limit:phi-theta,action"));
+  EXPECT_THAT(read_text(sandbox.directory() / "l.csv"),
+              StartsWith("branch,s,limit:phi-theta,action"));
   EXPECT_THAT(sandbox.files(), UnorderedElementsAre("l.csv", "l.png"));
 
   const Outcome text = run(tightening({"--along", "limit:phi-theta=-0.5:0.45"}));
