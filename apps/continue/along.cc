@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "carnot/plots/script.h"
@@ -205,8 +206,13 @@ std::string axis_label(const Along& along, const Run& run) {
         parameters.begin(), parameters.end(), [&](const auto& p) { return p.name == along.name; });
     return plots::with_unit(plots::symbol(along.name), found->unit);
   }
-  if (along.kind == Along::Kind::kLimit && along.start.size() == 1) {
+  if (along.kind == Along::Kind::kLimit && indices.size() == 1) {
     return plots::escaped("bound of " + along.name.substr(kLimit.size()));
+  }
+  if (along.kind == Along::Kind::kDisc && indices.size() == 1) {
+    constexpr std::array kParts{"x", "y", "radius"};
+    return plots::escaped(
+        fmt::format("{} of disc {}", kParts[indices.front()], along.name.substr(kDisc.size())));
   }
   if (along.kind == Along::Kind::kLimit || along.kind == Along::Kind::kDisc) {
     return plots::escaped(fmt::format(

@@ -221,6 +221,26 @@ TEST(ContinueCommand, MovesLimits) {
   EXPECT_THAT(text.out, HasSubstr("goes over from no limit to phi-theta"));
 }
 
+// The axis says which number it is.
+TEST(ContinueCommand, NamesTheOneNumberOfADiscThatChanges) {
+  const Sandbox sandbox;
+  const Outcome outcome = sandbox.run({"continue",
+                                       "unicycle",
+                                       "--from",
+                                       "0,0,0",
+                                       "--to",
+                                       "2,0,0.3",
+                                       "--disc",
+                                       "1,-0.5,0.2",
+                                       "--along",
+                                       "disc:1=1,-0.5,0.3",
+                                       "--quiet",
+                                       "--plot",
+                                       "d.svg"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(read_text(sandbox.directory() / "d.svg"), HasSubstr("radius of disc 1"));
+}
+
 TEST(ContinueCommand, MovesDiscsAndKeepsToLimitsAlongParameters) {
   const auto disc = run({"continue",
                          "unicycle",
