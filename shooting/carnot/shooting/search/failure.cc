@@ -149,8 +149,7 @@ Failure only_abnormal(double length) {
 
 std::string least_is_abnormal() {
   return "the first is strictly abnormal: the constraints alone make it an extremal, and no "
-         "momentum "
-         "leads along it";
+         "momentum leads along it";
 }
 
 Failure explain_failure(const BoundaryValueProblem& problem,
