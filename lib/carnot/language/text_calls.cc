@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "carnot/language/text_points.h"
+#include "carnot/language/text_row_newton.h"
 #include "carnot/system/packed_iteration.h"
 
 namespace carnot::language {
@@ -18,8 +19,8 @@ RateStatus solve(const TextSystem& s, const double& t, const double* z, double* 
   TextUnknowns x = Eigen::Map<const Eigen::VectorXd>(y, m);
   const TextEquations equations = equations_at(s, at(s, t, z));
   const bool cold = (x.array() == 0).all();
-  const RateStatus status =
-      cold ? stationary_cold_start(equations, x) : StationaryNewton(equations).solve(true, x);
+  const RateStatus status = cold ? stationary_cold_start(equations, x)
+                                 : StationaryNewton(equations).solve(Pursuit::kBranch, x);
   if (status == RateStatus::kOk) std::copy_n(x.data(), m, y);
   return status;
 }
@@ -114,6 +115,67 @@ Groups rows_at(const TextSystem& s, const double* t, const double* z, const doub
   return {t, z, z + s.dof * kLanes, y, kIdle.data(), kIdle.data()};
 }
 
+// Where y is not warm: from the scene's guess.
+void solve_from_guess(const TextSystem& s,
+                      const Groups& rows,
+                      const RowNewton::Lanes& warm,
+                      RowNewton& newton,
+                      double* y,
+                      RowNewton::Lanes& solved) {
+  std::array<double, RowFactor::kMost * kLanes> found;
+  s.guess.run_rows(rows, std::array<double*, 1>{found.data()});
+  RowNewton::Lanes cold;
+  for (int l = 0; l < kLanes; ++l) cold[l] = 1 - warm[l];
+  cold = newton.solve(Pursuit::kAnyNearby, cold, found.data());
+  for (int k = 0; k < s.algebraic * kLanes; ++k) {
+    if (cold[k % kLanes] == 1) y[k] = found[k];
+  }
+  for (int l = 0; l < kLanes; ++l) solved[l] += cold[l];
+}
+
+// y at all points: side by side where Newton's method comes to an end there, else one by one.
+bool solve_rows(const TextSystem& s, const double* t, const double* z, double* y) {
+  const int m = s.algebraic;
+  RowNewton::Lanes solved{};
+  RowNewton::Lanes warm{};
+  for (int k = 0; k < m * kLanes; ++k) {
+    if (y[k] != 0) warm[k % kLanes] = 1;
+  }
+  if (RowNewton::fits(m)) {
+    const Groups rows = rows_at(s, t, z, y);
+    RowNewton newton(s.hessian, rows, m);
+    const auto count = std::count(warm.begin(), warm.end(), 1.0);
+    if (count > 0) solved = newton.solve(Pursuit::kBranch, warm, y);
+    if (s.has_guess && count < kLanes) solve_from_guess(s, rows, warm, newton, y, solved);
+  }
+  std::array<double, 2 * kMostDof> point;
+  std::array<double, kMostMultipliers> solution;
+  for (int l = 0; l < kLanes; ++l) {
+    if (solved[l] == 1) continue;
+    for (int k = 0; k < 2 * s.dof; ++k) point[k] = z[k * kLanes + l];
+    for (int k = 0; k < m; ++k) solution[k] = y[k * kLanes + l];
+    if (solve(s, t[l], point.data(), solution.data()) != RateStatus::kOk) return false;
+    for (int k = 0; k < m; ++k) y[k * kLanes + l] = solution[k];
+  }
+  return true;
+}
+
+bool all_in_chart(const TextSystem& s, const double* z) {
+  if (!s.has_chart) return true;
+  std::array<double, kMostDof> q;
+  for (int l = 0; l < kLanes; ++l) {
+    for (int k = 0; k < s.dof; ++k) q[k] = z[k * kLanes + l];
+    if (!regular_chart(s, q.data())) return false;
+  }
+  return true;
+}
+
+bool nonlinear_rates(
+    const TextSystem& s, const double* t, const double* z, double* y, double* z_dot) {
+  return all_in_chart(s, z) && solve_rows(s, t, z, y) &&
+         s.rate.run_rows(rows_at(s, t, z, y), std::array<double*, 3>{z_dot, nullptr, nullptr});
+}
+
 bool rates(const void* opaque, const double* t, const double* z, double* y, double* z_dot) {
   const TextSystem& s = system_of(opaque);
   if (s.linear) {
@@ -122,20 +184,7 @@ bool rates(const void* opaque, const double* t, const double* z, double* y, doub
                                         std::array<double*, 3>{z_dot, y, checks.data()});
     return finite && all_pass(s.rate_checks.size(), checks.data());
   }
-  const int size = 2 * s.dof;
-  std::array<double, 2 * kMostDof> point;
-  std::array<double, 2 * kMostDof> out;
-  std::array<double, kMostMultipliers> solution;
-  for (int l = 0; l < kLanes; ++l) {
-    for (int k = 0; k < size; ++k) point[k] = z[k * kLanes + l];
-    for (int k = 0; k < s.algebraic; ++k) solution[k] = y[k * kLanes + l];
-    if (rate(opaque, t[l], point.data(), solution.data(), out.data()) != RateStatus::kOk) {
-      return false;
-    }
-    for (int k = 0; k < size; ++k) z_dot[k * kLanes + l] = out[k];
-    for (int k = 0; k < s.algebraic; ++k) y[k * kLanes + l] = solution[k];
-  }
-  return true;
+  return nonlinear_rates(s, t, z, y, z_dot);
 }
 
 bool jacobians(

@@ -250,7 +250,7 @@ double generalized_momentum(
   for (int i = 0; i < m; ++i) x[n + i] = lambda[i];
   const bool regular = regularity_of(hessian_at(legendre, x)).condition < kRegular;
   const TextEquations& equations = regular ? legendre : held;
-  bool found = StationaryNewton(equations).solve(true, x) == RateStatus::kOk;
+  bool found = StationaryNewton(equations).solve(Pursuit::kBranch, x) == RateStatus::kOk;
   found = found || stationary_cold_start(equations, x) == RateStatus::kOk;
   std::copy_n(x.data(), n, p);
   double violated = 0;
@@ -305,7 +305,7 @@ RateStatus nearest_branch(
         if (status == RateStatus::kOk) {
           for (int i = 0; i < n; ++i) start[i] = v[i];
           found = Eigen::Map<const Vector>(start.data(), n + k);
-          status = StationaryNewton(equations).solve(false, found);
+          status = StationaryNewton(equations).solve(Pursuit::kAny, found);
         }
         if (status == RateStatus::kOk && distance(found) < nearest) {
           nearest = distance(found);
@@ -336,7 +336,7 @@ std::shared_ptr<const void> on_branch(
     y = wanted;
     const TextEquations equations = equations_at(s, at(s, t, z.data()));
     status = (y.array() == 0).all() ? stationary_cold_start(equations, y)
-                                    : StationaryNewton(equations).solve(true, y);
+                                    : StationaryNewton(equations).solve(Pursuit::kBranch, y);
   }
   if (status != RateStatus::kOk) return nullptr;
   auto other = std::make_shared<TextBound>(bound(opaque));

@@ -257,7 +257,7 @@ class LagrangianSystem {
     const RateStatus status = stationary_cold_start(legendre, v);
     if (status != RateStatus::kOk) return status;
     y << v, lambda;
-    return StationaryNewton(equations).solve(false, y);
+    return StationaryNewton(equations).solve(Pursuit::kAny, y);
   }
 
   // g and G = dg/dv.

@@ -15,6 +15,7 @@
 
 #include <cmath>
 #include <concepts>
+#include <cstdint>
 #include <limits>
 
 #include "carnot/numerics/evenly_spread.h"
@@ -110,8 +111,14 @@ struct StationaryEquations {
   }
 };
 
-// Damped Newton iteration; at most kMaxIterations linear systems. With `keep_branch` a step may not
-// change det H_yy by more than a factor either, let alone its sign.
+// Along which solutions Newton's method goes, and how far.
+enum class Pursuit {
+  kBranch,    // a step may not change det H_yy by more than a factor either, let alone its sign
+  kAny,       // the solution may be any
+  kAnyNearby  // as kAny, as long as steps are neither short nor many and det H_yy does not fall
+};
+
+// Damped Newton iteration; at most kMaxIterations linear systems.
 template <class Equations>
 class StationaryNewton {
  public:
@@ -121,6 +128,10 @@ class StationaryNewton {
   using Factor = typename Equations::Factor;
   static constexpr int kMaxIterations = 100;
   static constexpr int kMaxHalvings = 30;
+  // Nearly all cold starts that end well need no more. (Appell's constraint: a third of all the
+  // work was to follow guesses to where det H_yy vanishes, while another start is close.)
+  static constexpr int kFewIterations = 25;
+  static constexpr int kFewHalvings = 5;
 
   explicit StationaryNewton(const Equations& equations)
       : equations_(equations),
@@ -129,28 +140,34 @@ class StationaryNewton {
         hessian_(equations.size(), equations.size()) {}
 
   // From y; on failure y is unchanged.
-  [[nodiscard]] RateStatus solve(bool keep_branch, Unknowns& y) {
+  [[nodiscard]] RateStatus solve(Pursuit pursuit, Unknowns& y) {
     x_ = y;
     step_.setConstant(std::numeric_limits<T>::max());
+    last_length_ = T(1);
     singular_solution_ = false;
     equations_.linearize(x_, residual_, hessian_);
     if (!(residual_.allFinite() && hessian_.allFinite())) return RateStatus::kNotFinite;
     Factor factor(hessian_);
     const T first_determinant = factor.determinant();
     Progress progress = Progress::kMoved;
-    for (int i = 0; i < kMaxIterations && progress == Progress::kMoved; ++i) {
+    const int most = pursuit == Pursuit::kAnyNearby ? kFewIterations : kMaxIterations;
+    for (int i = 0; i < most && progress == Progress::kMoved; ++i) {
       if (!factor.regular()) {
         singular_solution_ = at_noise();
         return RateStatus::kNotIndexOne;
       }
       step_ = -factor.solve(residual_);
-      progress = settled() ? Progress::kSettled : advance(keep_branch, factor);
+      progress = settled() ? Progress::kSettled : advance(pursuit, factor);
+    }
+    const bool fallen = fell(factor, first_determinant);
+    if (pursuit == Pursuit::kAnyNearby && (fallen || progress != Progress::kSettled)) {
+      return RateStatus::kNoSolution;
     }
     if (progress != Progress::kSettled) {
       if (!at_noise()) return RateStatus::kNoSolution;
       step_.setConstant(T(0));
     }
-    if (singular_root(factor, first_determinant)) {
+    if (fallen && singular_root(factor)) {
       singular_solution_ = true;
       return RateStatus::kNotIndexOne;
     }
@@ -177,17 +194,18 @@ class StationaryNewton {
     return true;
   }
 
-  // x_ <- x_ + a step_ with the first a = 1, 1/2, ... that passes the tests. When settled, step_ is
-  // what is left by the old factor, else residual_, hessian_ and the factor are those of the new
-  // x_.
-  [[nodiscard]] Progress advance(bool keep_branch, Factor& factor) {
+  // x_ <- x_ + a step_ with the first a = 1, 1/2, ... that passes the tests; where the step before
+  // was shortened, from twice its length on. When settled, step_ is what is left by the old factor,
+  // else residual_, hessian_ and the factor are those of the new x_.
+  [[nodiscard]] Progress advance(Pursuit pursuit, Factor& factor) {
     const Unknowns start = x_;
     const Unknowns step = step_;
     const T length = step.norm();
     const Unknowns residual = residual_;
     const Square hessian = hessian_;
-    T a(1);
-    for (int halving = 0; halving < kMaxHalvings; ++halving, a *= T(0.5)) {
+    const bool nearby = pursuit == Pursuit::kAnyNearby;
+    const T shortest = T(1) / T(std::int64_t{1} << (nearby ? kFewHalvings : kMaxHalvings));
+    for (T a = last_length_ < T(0.5) ? T(2) * last_length_ : T(1); a >= shortest; a *= T(0.5)) {
       x_ = start + a * step;
       residual_ = equations_.residual(x_);
       step_ = -factor.solve(residual_);
@@ -198,8 +216,10 @@ class StationaryNewton {
       equations_.linearize(x_, residual_, hessian_);
       const Factor next(hessian_);
       const T ratio = next.determinant() / factor.determinant();
-      if (hessian_.allFinite() && (!keep_branch || (ratio > T(0.25) && ratio < T(4)))) {
+      if (hessian_.allFinite() &&
+          (pursuit != Pursuit::kBranch || (ratio > T(0.25) && ratio < T(4)))) {
         factor = next;
+        last_length_ = a;
         return Progress::kMoved;
       }
       hessian_ = hessian;
@@ -219,11 +239,14 @@ class StationaryNewton {
     return (residual_.cwiseAbs().array() <= noise.array()).all();
   }
 
-  // The iterates ran into a point where det H_yy is small against where they began: is it zero
-  // within the rounding of the solution?
-  [[nodiscard]] bool singular_root(const Factor& factor, const T& first_determinant) const {
+  // The iterates ran into a point where det H_yy is small against where they began.
+  [[nodiscard]] static bool fell(const Factor& factor, const T& first_determinant) {
     using std::abs, std::cbrt;
-    if (abs(factor.determinant()) > cbrt(epsilon<T>()) * abs(first_determinant)) return false;
+    return !(abs(factor.determinant()) > cbrt(epsilon<T>()) * abs(first_determinant));
+  }
+
+  // Is it zero there within the rounding of the solution?
+  [[nodiscard]] bool singular_root(const Factor& factor) const {
     const Unknowns radius = factor.solve(equations_.noise(x_));
     Unknowns residual(radius.size());
     Square hessian(radius.size(), radius.size());
@@ -240,14 +263,16 @@ class StationaryNewton {
   Unknowns residual_;
   Unknowns step_;
   Square hessian_;
+  T last_length_ = T(1);  // of the last step, of the whole one
   bool singular_solution_ = false;
 };
 
 // Newton's method from starts of its own: the scene's, y = 0, and others of the size of the least
-// squares step from 0. Which branch is found where there are several is not said: use a warm start.
+// squares step from 0.
 template <class Equations>
-[[nodiscard]] RateStatus stationary_cold_start(const Equations& equations,
-                                               typename Equations::Unknowns& y) {
+[[nodiscard]] RateStatus pursue_from_starts(const Equations& equations,
+                                            Pursuit pursuit,
+                                            typename Equations::Unknowns& y) {
   using T = typename Equations::Number;
   using Unknowns = typename Equations::Unknowns;
   using Square = typename Equations::Square;
@@ -257,7 +282,7 @@ template <class Equations>
   // True when there is no need to go on. "No solution" says more than "singular at the start".
   const auto settled = [&](const Unknowns& start) {
     Unknowns x = start;
-    const RateStatus status = newton.solve(false, x);
+    const RateStatus status = newton.solve(pursuit, x);
     if (status == RateStatus::kOk) y = x;
     const bool settles = status == RateStatus::kOk || newton.singular_solution();
     if (settles || (status != RateStatus::kNotFinite && result != RateStatus::kNoSolution)) {
@@ -294,6 +319,16 @@ template <class Equations>
   return result;
 }
 
+// Cold: first without going far from any start, then as far as it takes. Which branch is found
+// where there are several is not said: use a warm start.
+template <class Equations>
+[[nodiscard]] RateStatus stationary_cold_start(const Equations& equations,
+                                               typename Equations::Unknowns& y) {
+  const RateStatus nearby = pursue_from_starts(equations, Pursuit::kAnyNearby, y);
+  if (nearby == RateStatus::kOk) return nearby;
+  return pursue_from_starts(equations, Pursuit::kAny, y);
+}
+
 // Solves H_y = 0 on real numbers: warm from y, or cold where y is all zero. On failure y is
 // unchanged.
 template <class System, class T>
@@ -304,7 +339,7 @@ template <class System, class T>
                                           Vector<T, System::kAlgebraic>& y) {
   const StationaryEquations<System, T> equations{system, t, q, p};
   if ((y.array() == T(0)).all()) return stationary_cold_start(equations, y);
-  return StationaryNewton(equations).solve(true, y);
+  return StationaryNewton(equations).solve(Pursuit::kBranch, y);
 }
 
 }  // namespace carnot
