@@ -267,7 +267,10 @@ class Formulator {
     out_.solve = [factor](const SymbolicVector& right) { return factor.solve(right); };
   }
 
-  // (v, lambda) from M v - G'lambda = a, -G v = b.
+  // (v, lambda) from M v - G'lambda = a, -G v = b, by M + gamma G'G, which is positive definite
+  // where M is on ker G. A mass that is positive definite everywhere is taken as it is: most of
+  // them are constant and diagonal, and nothing is left of their factors. (The derivatives of a
+  // skate's rates on the sphere take 1435 steps instead of 4650.)
   void saddle(const SymbolicMatrix& m,
               const SymbolicMatrix& g,
               const SymbolicVector& a,
@@ -280,6 +283,8 @@ class Formulator {
     if (k > 0) {
       SymbolicCholesky(graph_, product(graph_, g, g_t))
           .add_checks(RateStatus::kConstraintRank, out_.checks);
+    }
+    if (k > 0 && !SymbolicCholesky(graph_, m).always_positive()) {
       const SymbolicMatrix square = product(graph_, g_t, g);
       SymbolicVector mass_trace;
       SymbolicVector square_trace;

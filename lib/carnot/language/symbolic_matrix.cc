@@ -119,6 +119,12 @@ void SymbolicCholesky::add_checks(RateStatus status, std::vector<Check>& checks)
   }
 }
 
+bool SymbolicCholesky::always_positive() const {
+  return std::all_of(slack_.begin(), slack_.end(), [](const Expression& slack) {
+    return slack.is_constant() && slack.coefficient > 0;
+  });
+}
+
 SymbolicVector gradient(Graph& graph, const Expression& f, int first, int count) {
   SymbolicVector result;
   for (int i = 0; i < count; ++i) result.push_back(graph.derivative(f, first + i));

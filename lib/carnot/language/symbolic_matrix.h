@@ -50,6 +50,8 @@ class SymbolicCholesky {
   [[nodiscard]] SymbolicVector solve(const SymbolicVector& b) const;
   // That the pivots are positive to round-off, but for those that are constants and are.
   void add_checks(RateStatus status, std::vector<Check>& checks) const;
+  // Whether they are, at every point: no pivot depends on one.
+  [[nodiscard]] bool always_positive() const;
 
  private:
   // That of two rows.
