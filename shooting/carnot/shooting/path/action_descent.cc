@@ -101,6 +101,10 @@ constexpr double kLeastShift = 1e-6;
 constexpr double kDown = 1.0 / 4;
 constexpr double kUp = 8;
 
+// In natural scales, where those of an extremal are of size one. What is beyond is no use, and
+// Newton's method for the algebraic variables takes longest where it fails.
+constexpr double kLargestMomentum = 1e10;
+
 int Reduction::number_unknowns() {
   int next = 0;
   for (int i = 0; i <= intervals_; ++i) {
@@ -116,6 +120,10 @@ int Reduction::number_unknowns() {
 }
 
 bool Reduction::evaluate(State& state, bool second) {
+  state.exists = false;
+  for (const double s : state.path.lambda) {
+    if (!(std::abs(s) < kLargestMomentum)) return false;
+  }
   state.defect.resize(intervals_ * n_);
   state.by_q.resize(intervals_ * n_);
   state.action = 0;
@@ -272,7 +280,7 @@ bool Reduction::factor() {
 }
 
 void Reduction::solve(std::vector<double>& b) {
-  constexpr int kRefinements = 3;
+  constexpr int kRefinements = 1;
   const std::vector<double> right = b;
   matrix_.substitute(b);
   for (int round = 0; round < kRefinements; ++round) {

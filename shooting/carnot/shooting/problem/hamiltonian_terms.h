@@ -55,10 +55,19 @@ class HamiltonianTerms {
   [[nodiscard]] double entry(const std::vector<double>& m, int point, int i, int j) const {
     return m[(i * n_ + j) * kPoints + point];
   }
+  // Algebraic variables, and the momenta that they were found for.
+  struct Found {
+    std::vector<double> y;
+    std::vector<double> p;
+  };
+
   // Adds `weight` times H and its derivatives at (t, q, sign p).
-  bool add(int count, double sign, double weight, Order order, std::vector<double>& y);
-  // The rates at z from the algebraic variables `y`, or else from the branch of the system.
-  bool set_rates(std::vector<double>& y);
+  bool add(int count, double sign, double weight, Order order, Found& found);
+  // The rates at z from the algebraic variables that were found for momenta nearby, or else from
+  // the branch of the system.
+  bool set_rates(Found& found);
+  // Whether no momentum has changed by more than its own size.
+  [[nodiscard]] bool is_near(const std::vector<double>& p) const;
   // The Jacobians of the rates at z, in rows.
   bool set_jacobians(int count, const std::vector<double>& y);
 
@@ -69,7 +78,7 @@ class HamiltonianTerms {
   std::vector<double> t_;
   std::vector<double> z_;
   std::vector<double> z_dot_;
-  std::vector<std::vector<double>> y_;  // of each group, for p and for -p
+  std::vector<Found> found_;  // of each group, for p and for -p
   std::vector<double> jacobian_;
   std::vector<double> value_;
   std::vector<double> by_q_;
