@@ -22,6 +22,7 @@ using Eigen::VectorXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kFarScale = 100;  // of scales along a path: phases of 1e-4 still keep their digits
 
 // The directions Dh' at a phase point, orthonormal: vectors (a, 0) that are normal to the manifold
 // {h = 0, Dh H_p = 0}.
@@ -53,13 +54,14 @@ bool carry(const Dynamics& dynamics, const StepPlan& plan, std::vector<double>& 
 }
 
 // A phase point and the plane over it, in the units of a short extremal and balanced coordinates
-// (S^-1 X; S'P).
+// (S^-1 X / c; S'P c). The scale c is another one where X and P are no longer of one size.
 struct Frame {
   double t = 0;
   std::vector<double> z;
   MatrixXd plane;
   double phi = 0;  // continuous argument of det W
   Phases phases;
+  double scale = 1;  // c
 };
 
 class Planes {
@@ -102,6 +104,32 @@ class Planes {
     }
     return number;
   }
+  // Gives a frame another scale. That changes the phases, but none of them passes zero on the way
+  // from one scale to another, so N stays.
+  void set_scale(double scale, Frame& frame) const {
+    const double passed = std::round(count(frame));
+    const int n = dynamics_.dof;
+    const double by = scale / frame.scale;
+    frame.plane.topRows(n) /= by;
+    frame.plane.bottomRows(n) *= by;
+    frame.plane = orthonormal(frame.plane);
+    frame.scale = scale;
+    frame.phases = phases_of(frame.plane);
+    frame.phi = kTurn * passed;
+    for (Eigen::Index j = corank_; j < frame.phases.angles.size(); ++j) {
+      const double theta = frame.phases.angles[j];
+      frame.phi += theta < 0 ? theta + kTurn : theta;
+    }
+  }
+
+  // The scales at `steps` equal steps for which X and P are of one size, but for times where one of
+  // them vanishes and soon does no more: medians over a part of the path. Nothing where a step
+  // fails.
+  [[nodiscard]] std::vector<double> typical_scales(Frame frame,
+                                                   const Knots& knots,
+                                                   double time,
+                                                   long steps) const;
+
   // Whether a phase is so near to zero that round-off may have put it on the wrong side.
   [[nodiscard]] bool ambiguous(const Frame& frame) const { return near_zero(frame, doubt_) > 0; }
   [[nodiscard]] double doubt() const { return doubt_; }
@@ -132,12 +160,14 @@ class Planes {
     to.z = from.z;
     const StepPlan plan = StepPlan::equal(from.t, t - from.t, 1);
     if (!carry(dynamics_, plan, to.z, m)) return false;
+    to.scale = from.scale;
     MatrixXd carried = from.plane;
-    carried.topRows(n) = product(s_, carried.topRows(n));
-    carried.bottomRows(n) = product(inverse_, carried.bottomRows(n));
+    carried.topRows(n) = to.scale * product(s_, carried.topRows(n));
+    carried.bottomRows(n) = product(inverse_, carried.bottomRows(n)) / to.scale;
     carried = product(units_.map(m), carried);
-    carried.topRows(n) = product(inverse_, carried.topRows(n));
-    carried.bottomRows(n) = product(s_, carried.bottomRows(n));
+    carried.topRows(n) = product(inverse_, carried.topRows(n)) / to.scale;
+    carried.bottomRows(n) = to.scale * product(s_, carried.bottomRows(n));
+    if (!carried.allFinite()) return false;
     to.plane = orthonormal(carried);
     to.phases = phases_of(to.plane);
     // det W = (det U)^2.
@@ -155,6 +185,40 @@ class Planes {
   double precision_;
   double doubt_;
 };
+
+std::vector<double> Planes::typical_scales(Frame frame,
+                                           const Knots& knots,
+                                           double time,
+                                           long steps) const {
+  constexpr double kMost = 1e8;  // in one step: nothing is lost to round-off then
+  constexpr long kParts = 16;
+  const int n = dynamics_.dof;
+  const double h = time / static_cast<double>(steps);
+  const long per_segment = steps / knots.segments;
+  std::vector<double> scales;
+  for (long i = 1; i <= steps; ++i) {
+    Frame next;
+    if (!step(frame, static_cast<double>(i) * h, next)) return {};
+    const double ratio = next.plane.topRows(n).norm() / next.plane.bottomRows(n).norm();
+    set_scale(next.scale * std::sqrt(std::clamp(ratio, 1 / kMost, kMost)), next);
+    scales.push_back(next.scale);
+    if (i % per_segment == 0) {
+      const double* knot = knots.at(static_cast<int>(i / per_segment));
+      next.z.assign(knot, knot + 2 * n);
+    }
+    frame = std::move(next);
+  }
+  std::vector<double> medians;
+  for (long i = 0; i < steps; ++i) {
+    const long first = std::max(0L, i - steps / (2 * kParts));
+    const long last = std::min(steps, i + steps / (2 * kParts) + 1);
+    std::vector<double> part(scales.begin() + first, scales.begin() + last);
+    const auto middle = part.begin() + static_cast<std::ptrdiff_t>(part.size() / 2);
+    std::nth_element(part.begin(), middle, part.end());
+    medians.push_back(*middle);
+  }
+  return medians;
+}
 
 TargetForm Planes::form_at(const Frame& frame,
                            const BoundaryValueProblem& problem,
@@ -196,7 +260,9 @@ TargetForm Planes::form_at(const Frame& frame,
 // The plane of the start: vertical, but for what is free there.
 Frame first_frame(const BoundaryValueProblem& problem, const Knots& knots) {
   const int n = knots.dof;
-  Frame frame{0, {knots.at(0), knots.at(0) + 2 * n}, MatrixXd::Zero(2 * n, n), 0, {}};
+  Frame frame;
+  frame.z = {knots.at(0), knots.at(0) + 2 * n};
+  frame.plane = MatrixXd::Zero(2 * n, n);
   for (int j = 0; j < n; ++j) frame.plane(start_index(problem, j), j) = 1;
   frame.phases = phases_of(frame.plane);
   for (const double angle : frame.phases.angles) frame.phi += angle < 0 ? angle + kTurn : angle;
@@ -273,8 +339,10 @@ bool tells_kernels(const Knots& knots) {
   return extent >= kLeastExtent;
 }
 
-// One pass at a given number of steps, balanced by what is before `fraction` T.
+// One pass at a given number of steps, balanced by what is before `fraction` T; where `scaled`,
+// with scales that change along the path.
 ConjugateTimes follow(double fraction,
+                      bool scaled,
                       const BoundaryValueProblem& problem,
                       const Units& units,
                       const Knots& knots,
@@ -288,7 +356,14 @@ ConjugateTimes follow(double fraction,
   result.corank = graph->kernel;
   if (graph->kernel == n) return result;
   const Planes planes(problem.dynamics, units, graph->balance, graph->kernel, options.precision);
+  const long per_segment = std::max(1L, (steps + knots.segments - 1) / knots.segments);
   Frame frame = first_frame(problem, knots);
+  std::vector<double> scales;
+  if (scaled) {
+    scales = planes.typical_scales(frame, knots, problem.time, per_segment * knots.segments);
+    if (scales.empty()) return result;
+    frame.scale = scales.front();  // the directions of q and of p at the start have the same phases
+  }
   Frame clear = frame;  // the last frame whose count is beyond doubt
   int counted = 0;
   const auto count_to = [&](int count, const Frame& until) {
@@ -297,7 +372,6 @@ ConjugateTimes follow(double fraction,
     }
     return count == counted || result.times.size() == options.most;
   };
-  const long per_segment = std::max(1L, (steps + knots.segments - 1) / knots.segments);
   for (long i = 1; i <= per_segment * knots.segments; ++i) {
     const double t =
         problem.time * static_cast<double>(i) / static_cast<double>(per_segment * knots.segments);
@@ -308,6 +382,10 @@ ConjugateTimes follow(double fraction,
       next.z.assign(knot, knot + 2 * n);
     }
     frame = next;
+    if (scaled && !planes.ambiguous(frame)) {
+      const double change = scales[i - 1] / frame.scale;
+      if (change > kFarScale || change < 1 / kFarScale) planes.set_scale(scales[i - 1], frame);
+    }
     if (i == per_segment * knots.segments || planes.ambiguous(frame)) continue;
     if (!count_to(static_cast<int>(std::lround(planes.count(frame))), frame)) return result;
     clear = frame;
@@ -331,21 +409,22 @@ ConjugateTimes follow(double fraction,
   return result;
 }
 
-}  // namespace
-
-ConjugateTimes conjugate_times(const BoundaryValueProblem& problem,
-                               const Knots& knots,
-                               long steps,
-                               const ConjugateTimesOptions& options) {
-  // A phase that makes a whole turn within one step goes unseen: two passes, of other steps and
-  // another balance, must agree.
+// A phase that makes a whole turn within one step goes unseen: two passes, of other steps and
+// another balance, must agree.
+ConjugateTimes agreed(bool scaled,
+                      const BoundaryValueProblem& problem,
+                      const Units& units,
+                      const Knots& knots,
+                      long steps,
+                      const ConjugateTimesOptions& options) {
   constexpr int kDoublings = 4;
   constexpr std::array kFractions{0.43, 0.31};
-  const Units units(problem, start_unknowns(problem, knots.at(0)));
-  ConjugateTimes coarse = follow(kFractions[0], problem, units, knots, steps, options);
-  for (int i = 0; i < kDoublings; ++i) {
-    steps *= 2;
-    ConjugateTimes fine = follow(kFractions[(i + 1) % 2], problem, units, knots, steps, options);
+  const auto pass = [&](int i) {
+    return follow(kFractions[i % 2], scaled, problem, units, knots, steps << i, options);
+  };
+  ConjugateTimes coarse = pass(0);
+  for (int i = 1; i <= kDoublings; ++i) {
+    ConjugateTimes fine = pass(i);
     if (coarse.known && fine.known && coarse.times.size() == fine.times.size() &&
         coarse.corank == fine.corank) {
       return fine;
@@ -355,6 +434,18 @@ ConjugateTimes conjugate_times(const BoundaryValueProblem& problem,
   coarse.known = false;
   coarse.times.clear();
   return coarse;
+}
+
+}  // namespace
+
+ConjugateTimes conjugate_times(const BoundaryValueProblem& problem,
+                               const Knots& knots,
+                               long steps,
+                               const ConjugateTimesOptions& options) {
+  const Units units(problem, start_unknowns(problem, knots.at(0)));
+  ConjugateTimes found = agreed(false, problem, units, knots, steps, options);
+  if (!found.known) found = agreed(true, problem, units, knots, steps, options);
+  return found;
 }
 
 }  // namespace carnot::internal
