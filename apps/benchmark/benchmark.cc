@@ -1,6 +1,7 @@
 // carnot benchmark: speed against error on three trajectories whose ends are known to many digits;
 // with --boundary-value, solvers of boundary-value problems from blind starts; with --limits,
-// geodesics that keep to limits; with --energy, H in long runs.
+// geodesics that keep to limits; with --drift, those of scenes with drift; with --energy, H in long
+// runs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,8 +14,8 @@
 
 #include "benchmark/benchmark_boundary_report.h"
 #include "benchmark/benchmark_cache.h"
+#include "benchmark/benchmark_direct_report.h"
 #include "benchmark/benchmark_energy_report.h"
-#include "benchmark/benchmark_limits_report.h"
 #include "benchmark/benchmark_report.h"
 #include "benchmark/benchmark_rows.h"
 #include "carnot/language/nearest.h"
@@ -41,7 +42,7 @@ std::vector<Contestant> peer_contestants(const BenchmarkProblem&, const Benchmar
   return {};
 }
 std::vector<BoundarySolver> boundary_peers() { return {}; }
-DirectSolver limits_peer() { return {}; }
+DirectSolver direct_peer() { return {}; }
 #endif
 
 constexpr const char* kFooter = R"(
@@ -69,6 +70,10 @@ With --limits: a wheel, a hinge and a heading that turn so far and no further, a
 With --peers ipopt keeps to the same limits on the direct midpoint transcription: from carnot's path
 on 1024, 2048 and 4096 intervals, whose actions are extrapolated, and from 16 blind starts on 64.
 
+With --drift: a transfer between circles, an oscillator, a pendulum, a cart-pole, a quadrotor, a ship
+in a vortex and a linear-quadratic problem, whose texts are in docs/examples/scenes. With --peers
+ipopt solves for paths and controls on 512, 1024 and 2048 intervals, and from 16 blind starts on 64.
+
 With --energy: the largest |H - H0| on the vehicle over T = 1000 against the CPU time of the run, by
 Gauss methods with steps around 0.2, whose stages are iterated to round-off or to changes of 1e-13,
 by dop853-adaptive and, with --peers, by gsl-rk8pd and odeint-rkf78; and how the round-off in H
@@ -83,6 +88,7 @@ Examples
   carnot benchmark --plot speed.png --output speed.md
   carnot benchmark --boundary-value --starts 32 --output solvers.md
   carnot benchmark --limits
+  carnot benchmark --drift
   carnot benchmark --energy --steps 10000000 --plot energy.png
 
 Exit status: 0 success, 1 a file or reference did not come about, 2 bad input, 130 interrupted.)";
@@ -96,6 +102,7 @@ struct Options {
   bool quick = false;
   bool boundary_value = false;
   bool limits = false;
+  bool drift = false;
   bool energy = false;
   std::string steps;
   std::string starts;
@@ -203,6 +210,7 @@ void check_options(const Options& options) {
   std::vector<std::string> kinds;
   if (options.boundary_value) kinds.emplace_back("--boundary-value");
   if (options.limits) kinds.emplace_back("--limits");
+  if (options.drift) kinds.emplace_back("--drift");
   if (options.energy) kinds.emplace_back("--energy");
   if (kinds.size() > 1) refuse(kinds[1], "", "given besides " + kinds[0], "one of the two");
   if (!kinds.empty() && !options.scenes.empty()) {
@@ -213,11 +221,12 @@ void check_options(const Options& options) {
     check_absent("--boundary-value",
                  {{"--starts", options.starts}, {"--targets", options.targets}});
   }
-  if (!options.boundary_value && !options.limits) {
-    check_absent("--boundary-value or --limits", {{"--seed", options.seed}});
+  const bool direct = options.limits || options.drift;
+  if (!options.boundary_value && !direct) {
+    check_absent("--boundary-value, --limits or --drift", {{"--seed", options.seed}});
   }
-  if (options.limits && !options.destination.plot.empty()) {
-    refuse("--plot", options.destination.plot, "given besides --limits", "--output");
+  if (direct && !options.destination.plot.empty()) {
+    refuse("--plot", options.destination.plot, "given besides " + kinds[0], "--output");
   }
   if (!options.boundary_value && !options.energy) {
     check_absent("--boundary-value or --energy", {{"--threads", options.threads}});
@@ -273,23 +282,24 @@ int run_boundary(const Options& options, const std::vector<std::string>& argumen
   return deliver(result, options.destination);
 }
 
-int run_limits(const Options& options, const std::vector<std::string>& arguments) {
+int run_direct(const Options& options, const std::vector<std::string>& arguments) {
   const Stopwatch watch;
-  LimitsOptions checked;
+  DirectOptions checked;
   checked.quick = options.quick;
   if (!options.seed.empty()) checked.seed = parse_seed("--seed", options.seed);
-  std::optional<std::vector<LimitsRow>> found;
+  std::optional<std::vector<DirectRow>> found;
   {
     ProgressBar bar("%", 100, options.destination.quiet);
-    const auto peer = options.peers ? std::optional(limits_peer()) : std::nullopt;
-    found = run_limits_benchmark(checked, peer, bar.callback());
+    const auto peer = options.peers ? std::optional(direct_peer()) : std::nullopt;
+    const auto& problems = options.drift ? drift_problems() : limits_problems();
+    found = run_direct_benchmark(problems, checked, peer, bar.callback());
   }
   Result result = result_of(arguments, found ? "" : "stopped");
-  const std::vector<LimitsRow> measured = found.value_or(std::vector<LimitsRow>{});
-  add_limits_json(measured, result.json);
+  const std::vector<DirectRow> measured = found.value_or(std::vector<DirectRow>{});
+  add_direct_json(measured, result.json);
   result.json["elapsed_seconds"] = watch.seconds();
-  result.text = [&] { return limits_text(measured); };
-  result.csv = [&] { return limits_markdown(measured, arguments); };
+  result.text = [&] { return direct_text(measured); };
+  result.csv = [&] { return direct_markdown(measured, arguments); };
   return deliver(result, options.destination);
 }
 
@@ -355,7 +365,7 @@ int run_trajectories(const Options& options, const std::vector<std::string>& arg
 int run_benchmark(const Options& options, const std::vector<std::string>& arguments) {
   check_options(options);
   if (options.boundary_value) return run_boundary(options, arguments);
-  if (options.limits) return run_limits(options, arguments);
+  if (options.limits || options.drift) return run_direct(options, arguments);
   if (options.energy) return run_energy(options, arguments);
   return run_trajectories(options, arguments);
 }
@@ -374,6 +384,7 @@ void add_benchmark(CLI::App& app, Invocation& invocation) {
                      options->boundary_value,
                      "compare solvers of boundary-value problems instead");
   benchmark.add_flag("--limits", options->limits, "geodesics that keep to limits instead");
+  benchmark.add_flag("--drift", options->drift, "geodesics of scenes with drift instead");
   benchmark.add_flag("--energy", options->energy, "measure H in long runs instead");
   const auto add = [&](const char* name, std::string& value, const char* help) {
     benchmark.add_option(name, value, help)->type_name("N");

@@ -17,6 +17,9 @@ struct SceneText {
 // Those of lib/carnot/scenes/*.scene, which are part of the program.
 const std::vector<SceneText>& scene_texts();
 
+// Those of docs/examples/scenes that `carnot benchmark --drift` solves.
+const std::vector<SceneText>& drift_texts();
+
 // The text of a scene. Throws std::invalid_argument where there is none.
 std::string text_of_scene(const SceneEntry& entry);
 

@@ -1,6 +1,7 @@
 #include "benchmark/peers/boundary_peers.h"
 
 #include "benchmark/benchmark_clock.h"
+#include "benchmark/peers/ipopt_run.h"
 #include "carnot/shooting/extremal/verification.h"
 #include "carnot/shooting/geodesic_options.h"
 #include "carnot/shooting/search/momentum_starts.h"
@@ -9,7 +10,7 @@
 namespace carnot::apps {
 namespace {
 
-BoundaryTrial run_ipopt(const BoundaryValueProblem& problem, std::uint64_t seed, int i) {
+BoundaryTrial try_ipopt(const BoundaryValueProblem& problem, std::uint64_t seed, int i) {
   constexpr int kIntervals = 50;
   const double began = thread_seconds();
   internal::Start start = internal::make_start(problem, seed, i + 1, kIntervals);
@@ -43,10 +44,15 @@ BoundaryTrial run_gsl(const BoundaryValueProblem& problem, std::uint64_t seed, i
 
 std::vector<BoundarySolver> boundary_peers() {
   // The linear solver that Debian's Ipopt uses, MUMPS, is not made for threads.
-  return {{"ipopt", BoundaryStart::kPath, true, false, false, run_ipopt},
+  return {{"ipopt", BoundaryStart::kPath, true, false, false, try_ipopt},
           {"gsl-hybridsj", BoundaryStart::kMomentum, true, true, true, run_gsl}};
 }
 
-DirectSolver limits_peer() { return {"ipopt", solve_with_ipopt}; }
+DirectSolver direct_peer() {
+  return {"ipopt", [](const BoundaryValueProblem& problem, GridPath& path) {
+            return path.u.empty() ? solve_with_ipopt(problem, path.q)
+                                  : control_with_ipopt(problem, path);
+          }};
+}
 
 }  // namespace carnot::apps

@@ -1,11 +1,11 @@
-// Other people's solvers of boundary-value problems for `carnot benchmark --boundary-value` and
-// `--limits`.
+// Other people's solvers of boundary-value problems for `carnot benchmark --boundary-value`,
+// `--limits` and `--drift`.
 #pragma once
 
 #include <vector>
 
 #include "benchmark/benchmark_boundary.h"
-#include "benchmark/benchmark_limits.h"
+#include "benchmark/benchmark_direct.h"
 
 namespace carnot::apps {
 
@@ -13,7 +13,7 @@ namespace carnot::apps {
 std::vector<BoundarySolver> boundary_peers();
 
 // ipopt.
-DirectSolver limits_peer();
+DirectSolver direct_peer();
 
 // Ipopt on the direct midpoint transcription: q holds the nodes, (intervals + 1) x n, of a path
 // whose ends stay and whose other nodes keep to the limits of the problem. The action of the

@@ -1,4 +1,4 @@
-// Ipopt, which is under the EPL, on the direct midpoint transcription.
+// Ipopt on the direct midpoint transcription of a problem with velocity constraints.
 //
 // Minimise sum_i h L(qm_i, v_i) subject to h G(qm_i) v_i = 0. All that Ipopt asks for is in the
 // discrete Lagrangian F(x, lambda) = h (L - lambda.G v) of Dynamics: F_lambda = -h G v are the
@@ -11,6 +11,7 @@
 #include <span>
 
 #include "benchmark/peers/boundary_peers.h"
+#include "benchmark/peers/ipopt_run.h"
 
 namespace carnot::apps {
 namespace {
@@ -279,18 +280,21 @@ class Transcription : public Ipopt::TNLP {
 
 }  // namespace
 
-std::optional<double> solve_with_ipopt(const BoundaryValueProblem& problem,
-                                       std::vector<double>& q) {
-  double action = 0;
-  const Ipopt::SmartPtr<Ipopt::TNLP> transcription = new Transcription(problem, q, action);
+bool run_ipopt(const Ipopt::SmartPtr<Ipopt::TNLP>& problem) {
   const Ipopt::SmartPtr<Ipopt::IpoptApplication> ipopt = new Ipopt::IpoptApplication(false);
   ipopt->Options()->SetIntegerValue("print_level", 0);
   ipopt->Options()->SetStringValue("sb", "yes");
   ipopt->Options()->SetIntegerValue("max_iter", 500);
   ipopt->Options()->SetNumericValue("tol", 1e-10);
   ipopt->Options()->SetNumericValue("bound_relax_factor", 0);  // limits are kept to, not nearly
-  if (ipopt->Initialize() != Ipopt::Solve_Succeeded) return std::nullopt;
-  if (ipopt->OptimizeTNLP(transcription) != Ipopt::Solve_Succeeded) return std::nullopt;
+  return ipopt->Initialize() == Ipopt::Solve_Succeeded &&
+         ipopt->OptimizeTNLP(problem) == Ipopt::Solve_Succeeded;
+}
+
+std::optional<double> solve_with_ipopt(const BoundaryValueProblem& problem,
+                                       std::vector<double>& q) {
+  double action = 0;
+  if (!run_ipopt(new Transcription(problem, q, action))) return std::nullopt;
   return action;
 }
 

@@ -5,7 +5,7 @@
 
 #include "command.h"
 
-namespace carnot::apps::cli_benchmark_limits_test {
+namespace carnot::apps::cli_benchmark_direct_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -57,8 +57,40 @@ TEST(LimitsBenchmark, RefusesBadInput) {
       {{"benchmark", "--limits", "--starts", "3"}, "--starts"},
       {{"benchmark", "--limits", "--threads", "1"}, "--threads"},
       {{"benchmark", "--limits", "--plot", "l.png"}, "--plot"},
-      {{"benchmark", "--limits", "--seed", "-1"}, "--seed"}};
+      {{"benchmark", "--limits", "--seed", "-1"}, "--seed"},
+      {{"benchmark", "--limits", "--drift"}, "--drift"},
+      {{"benchmark", "--drift", "--energy"}, "--energy"},
+      {{"benchmark", "--drift", "--plot", "d.png"}, "--plot"},
+      {{"benchmark", "--drift", "--steps", "1000"}, "--steps"}};
   for (const auto& [arguments, message] : cases) expect_refused(arguments, HasSubstr(message));
+}
+
+TEST(DriftBenchmark, HoldsItsContract) {
+  const Sandbox sandbox;
+  const Outcome outcome =
+      sandbox.run({"benchmark", "--drift", "--quick", "--json", "--output", "drift.md"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  const auto json = outcome.json();
+  ASSERT_EQ(json["rows"].size(), 7);
+  for (const auto& row : json["rows"]) {
+    EXPECT_THAT(keys(row),
+                ElementsAre("problem",
+                            "scene",
+                            "from",
+                            "to",
+                            "time",
+                            "action",
+                            "verification",
+                            "label",
+                            "seconds",
+                            "direct"));
+    EXPECT_EQ(row["label"], "locally-minimal") << row["problem"];
+    EXPECT_TRUE(row["direct"].is_null());
+  }
+  const std::string report = read_text(sandbox.directory() / "drift.md");
+  EXPECT_THAT(report, HasSubstr("## Drift"));
+  EXPECT_THAT(report, HasSubstr("| kepler-transfer |"));
 }
 
 #ifdef CARNOT_PEERS
@@ -77,7 +109,20 @@ TEST(LimitsBenchmark, AgreesWithADirectMethod) {
     EXPECT_GE(direct["solved"], 1);
   }
 }
+
+// Of each scene the direct method sees its Hamiltonian only, and makes all derivatives itself.
+TEST(DriftBenchmark, AgreesWithADirectMethod) {
+  const auto json = run({"benchmark", "--drift", "--quick", "--peers", "--json"}).json();
+  for (const auto& row : json["rows"]) {
+    const auto& direct = row["direct"];
+    ASSERT_FALSE(direct["action"].is_null()) << row["problem"];
+    const double action = row["action"];
+    EXPECT_NEAR(direct["action"], action, direct["action_error"].get<double>() + 1e-9 * action)
+        << row["problem"];
+    EXPECT_GE(direct["solved"], 1) << row["problem"];
+  }
+}
 #endif
 
 }  // namespace
-}  // namespace carnot::apps::cli_benchmark_limits_test
+}  // namespace carnot::apps::cli_benchmark_direct_test
