@@ -270,7 +270,8 @@ class Formulator {
   // (v, lambda) from M v - G'lambda = a, -G v = b, by M + gamma G'G, which is positive definite
   // where M is on ker G. A mass that is positive definite everywhere is taken as it is: most of
   // them are constant and diagonal, and nothing is left of their factors. (The derivatives of a
-  // skate's rates on the sphere take 1435 steps instead of 4650.)
+  // skate's rates on the sphere take 1435 steps instead of 4650.) What gamma does for rows that are
+  // nearly dependent, G v = -b to round-off, one correction of (v, lambda) does then.
   void saddle(const SymbolicMatrix& m,
               const SymbolicMatrix& g,
               const SymbolicVector& a,
@@ -327,6 +328,16 @@ class Formulator {
     SymbolicVector right = a;
     right.insert(right.end(), b.begin(), b.end());
     out_.solution = out_.solve(right);
+    if (k == 0 || !gamma.is_zero()) return;
+    for (Expression& e : out_.solution) e = graph_.whole(e);
+    const SymbolicVector v(out_.solution.begin(), out_.solution.begin() + n);
+    SymbolicVector left(static_cast<std::size_t>(n), graph_.number(0));
+    const SymbolicVector speed = product(graph_, g, v);
+    for (int i = 0; i < k; ++i) left.push_back(graph_.whole(speed[i] + b[i]));
+    const SymbolicVector correction = out_.solve(left);
+    for (std::size_t i = 0; i < correction.size(); ++i) {
+      out_.solution[i] = out_.solution[i] + correction[i];
+    }
   }
 
   // lambda from G G'lambda = G (M v - p).

@@ -53,6 +53,21 @@ bool carry(const Dynamics& dynamics, const StepPlan& plan, std::vector<double>& 
   return m.allFinite();
 }
 
+// For a plane (X / c, P c): what c is to be multiplied by for X and P to be of one size. Where one
+// of them vanishes, so much as loses no digits.
+double even_factor(const MatrixXd& plane) {
+  constexpr double kMost = 1e8;
+  const auto n = plane.cols();
+  const double ratio = plane.topRows(n).norm() / plane.bottomRows(n).norm();
+  return std::sqrt(std::clamp(ratio, 1 / kMost, kMost));
+}
+
+void scale_plane(double by, MatrixXd& plane) {
+  const auto n = plane.cols();
+  plane.topRows(n) /= by;
+  plane.bottomRows(n) *= by;
+}
+
 // A phase point and the plane over it, in the units of a short extremal and balanced coordinates
 // (S^-1 X / c; S'P c). The scale c is another one where X and P are no longer of one size.
 struct Frame {
@@ -108,10 +123,7 @@ class Planes {
   // from one scale to another, so N stays.
   void set_scale(double scale, Frame& frame) const {
     const double passed = std::round(count(frame));
-    const int n = dynamics_.dof;
-    const double by = scale / frame.scale;
-    frame.plane.topRows(n) /= by;
-    frame.plane.bottomRows(n) *= by;
+    scale_plane(scale / frame.scale, frame.plane);
     frame.plane = orthonormal(frame.plane);
     frame.scale = scale;
     frame.phases = phases_of(frame.plane);
@@ -190,7 +202,6 @@ std::vector<double> Planes::typical_scales(Frame frame,
                                            const Knots& knots,
                                            double time,
                                            long steps) const {
-  constexpr double kMost = 1e8;  // in one step: nothing is lost to round-off then
   constexpr long kParts = 16;
   const int n = dynamics_.dof;
   const double h = time / static_cast<double>(steps);
@@ -199,8 +210,7 @@ std::vector<double> Planes::typical_scales(Frame frame,
   for (long i = 1; i <= steps; ++i) {
     Frame next;
     if (!step(frame, static_cast<double>(i) * h, next)) return {};
-    const double ratio = next.plane.topRows(n).norm() / next.plane.bottomRows(n).norm();
-    set_scale(next.scale * std::sqrt(std::clamp(ratio, 1 / kMost, kMost)), next);
+    set_scale(next.scale * even_factor(next.plane), next);
     scales.push_back(next.scale);
     if (i % per_segment == 0) {
       const double* knot = knots.at(static_cast<int>(i / per_segment));
@@ -274,6 +284,7 @@ Frame first_frame(const BoundaryValueProblem& problem, const Knots& knots) {
 // turn too fast to be seen.
 std::optional<Graph> typical_graph(double begin,
                                    double end,
+                                   bool scaled,
                                    const BoundaryValueProblem& problem,
                                    const Units& units,
                                    const Knots& knots,
@@ -285,6 +296,7 @@ std::optional<Graph> typical_graph(double begin,
   const long count = std::max(2L, std::lround(steps * piece / problem.time));
   const double h = piece / static_cast<double>(count);
   MatrixXd plane = first_frame(problem, knots).plane;
+  double scale = 1;
   std::vector<Graph> graphs;
   for (int i = 0; i < last; ++i) {
     std::vector<double> z(knots.at(i), knots.at(i) + 2 * n);
@@ -293,7 +305,15 @@ std::optional<Graph> typical_graph(double begin,
       RowMajor m(2 * n, 2 * n);
       const StepPlan plan = StepPlan::equal(t, h, 1);
       if (!carry(problem.dynamics, plan, z, m)) return std::nullopt;
-      plane = orthonormal(product(units.map(m), plane));
+      scale_plane(1 / scale, plane);
+      plane = product(units.map(m), plane);
+      scale_plane(scale, plane);
+      if (scaled) {
+        const double by = even_factor(plane);
+        scale_plane(by, plane);
+        scale *= by;
+      }
+      plane = orthonormal(plane);
       if (t + h < first) continue;
       Graph next = graph_of(plane);
       if (next.balance.allFinite()) graphs.push_back(std::move(next));
@@ -314,14 +334,15 @@ std::optional<Graph> typical_graph(double begin,
 // an abnormal one later than that, exponentially for example. So where there is a kernel, a late
 // time is tried, too.
 std::optional<Graph> balance_of(double fraction,
+                                bool scaled,
                                 const BoundaryValueProblem& problem,
                                 const Units& units,
                                 const Knots& knots,
                                 long steps) {
   constexpr double kLate = 0.9;
-  auto graph = typical_graph(0.5 * fraction, fraction, problem, units, knots, steps);
+  auto graph = typical_graph(0.5 * fraction, fraction, scaled, problem, units, knots, steps);
   if (!graph || graph->kernel == 0) return graph;
-  auto late = typical_graph(kLate, 1, problem, units, knots, steps);
+  auto late = typical_graph(kLate, 1, scaled, problem, units, knots, steps);
   return late && late->kernel < graph->kernel ? late : graph;
 }
 
@@ -350,7 +371,7 @@ ConjugateTimes follow(double fraction,
                       const ConjugateTimesOptions& options) {
   const int n = problem.dynamics.dof;
   ConjugateTimes result;
-  const std::optional<Graph> graph = balance_of(fraction, problem, units, knots, steps);
+  const std::optional<Graph> graph = balance_of(fraction, scaled, problem, units, knots, steps);
   const int known = problem.dynamics.forced;  // momenta along Dh move nothing
   if (!graph || (graph->kernel > known && !units.scaled() && !tells_kernels(knots))) return result;
   result.corank = graph->kernel;
