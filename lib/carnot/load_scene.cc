@@ -71,7 +71,7 @@ std::shared_ptr<const TextScene::Impl> TextScene::Impl::read(
     impl->parameters.push_back({p.name, p.default_value, p.value, p.unit, p.range, p.meaning});
   }
   try {
-    const language::Formulation formulation = language::formulate(source, text, file);
+    language::Formulation formulation = language::formulate(source, text, file);
     const bool generalized =
         formulation.kind == language::Formulation::Kind::kGeneralizedHamiltonian;
     if (generalized && !source.limits.empty()) {
@@ -82,6 +82,10 @@ std::shared_ptr<const TextScene::Impl> TextScene::Impl::read(
     }
     impl->info = language::describe_text(source, formulation);
     impl->system = std::make_shared<const language::TextSystem>(formulation, *source.graph);
+    if (formulation.may_be_indefinite && language::is_indefinite(impl->bind())) {
+      formulation = language::formulate(source, text, file, language::QuadraticBy::kNewton);
+      impl->system = std::make_shared<const language::TextSystem>(formulation, *source.graph);
+    }
     const Dynamics dynamics = impl->bind();
     language::check_text(source, formulation, dynamics, text, file);
     impl->info.symmetries = language::find_symmetries(dynamics);

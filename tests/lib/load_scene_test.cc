@@ -55,6 +55,41 @@ TEST_P(TextSizes, FlowByEveryKernel) {
 
 INSTANTIATE_TEST_SUITE_P(Coordinates, TextSizes, ::testing::Range(1, 13));
 
+// A quadratic Lagrangian makes motion wherever its mass is regular, of whatever signs.
+TEST(LoadScene, AMassMayBeIndefinite) {
+  constexpr double kRoundOff = 64 * kEps;
+  const auto end = [](const std::string& text, std::vector<double> z) {
+    const Dynamics d = make_dynamics(scene_from_text(text));
+    EXPECT_TRUE(d.flow(StepPlan::equal(0, 1, 20), z).completed()) << text;
+    return z;
+  };
+  const double c = std::cos(1.0);
+  const double s = std::sin(1.0);
+  // x'' = -x, y'' = 0.
+  auto z = end("coordinates x, y\nlagrangian = (x'^2 - y'^2 - x^2) / 2\n", {0.1, 0.2, 0.3, -0.4});
+  EXPECT_NEAR(z[0], 0.1 * c + 0.3 * s, kRoundOff);
+  EXPECT_NEAR(z[1], 0.2 + 0.4, kRoundOff);
+  EXPECT_NEAR(z[3], -0.4, kRoundOff);
+  // p_x = y' and p_y = x': x'' = -x, y'' = -y.
+  z = end("coordinates x, y\nlagrangian = x' y' - x y\n", {0.1, 0.2, 0.3, 0.4});
+  EXPECT_NEAR(z[0], 0.1 * c + 0.4 * s, kRoundOff);
+  EXPECT_NEAR(z[1], 0.2 * c + 0.3 * s, kRoundOff);
+  // With x' = z', -(y'^2 / 2) + x'^2.
+  z = end("coordinates x, y, z\nlagrangian = (x'^2 - y'^2 + z'^2) / 2\n0 = x' - z'\n",
+          {0, 0, 0, 0.7, 0.5, 0.1});
+  EXPECT_NEAR(z[0], 0.4, kRoundOff);
+  EXPECT_NEAR(z[1], -0.5, kRoundOff);
+  // Negative for some x only: where (1 + 3 x)^(3/2) is linear in time.
+  for (const double x : {0.5, -0.5}) {
+    const double p = 0.1 * (1 + 3 * x);
+    z = end("coordinates x\nlagrangian = (1 + 3 x) x'^2 / 2\n", {x, p});
+    const double root = std::sqrt(std::abs(1 + 3 * x));
+    const double now = std::pow(std::abs(1 + 3 * z[0]), 1.5);
+    const double slope = (x > 0 ? 4.5 : -4.5) * root * 0.1;
+    EXPECT_NEAR(now, root * root * root + slope, kRoundOff) << x;
+  }
+}
+
 TEST(LoadScene, RefusesMoreThanTwelveCoordinates) {
   try {
     (void)scene_from_text(oscillators(13));

@@ -179,6 +179,10 @@ Symmetries find_symmetries(const Dynamics& dynamics) {
   return symmetries;
 }
 
+bool is_indefinite(const Dynamics& dynamics) {
+  return Samples(dynamics).failure() == RateStatus::kMassNotPositive;
+}
+
 void check_text(const SceneSource& scene,
                 const Formulation& formulation,
                 const Dynamics& dynamics,

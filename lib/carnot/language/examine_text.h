@@ -16,6 +16,9 @@ namespace carnot::language {
 // that H does not depend on. Up to 2^n evaluations of H at each point, a millisecond for n = 8.
 Symmetries find_symmetries(const Dynamics& dynamics);
 
+// Whether the mass is not positive definite at some random point where it was to be.
+bool is_indefinite(const Dynamics& dynamics);
+
 // Throws TextError where H_y = 0 cannot be solved at any of some random points, saying why, and for
 // symmetries that the text claims and H does not have.
 void check_text(const SceneSource& scene,

@@ -11,8 +11,11 @@ namespace {
 
 class Formulator {
  public:
-  Formulator(const SceneSource& scene, std::string_view text, const std::string& file)
-      : scene_(scene), graph_(*scene.graph), text_(text), file_(file) {}
+  Formulator(const SceneSource& scene,
+             std::string_view text,
+             const std::string& file,
+             QuadraticBy quadratic)
+      : scene_(scene), graph_(*scene.graph), text_(text), file_(file), quadratic_(quadratic) {}
 
   Formulation run() {
     out_.dof = scene_.dof();
@@ -429,6 +432,8 @@ class Formulator {
     const SymbolicVector pushed = transposed_product(graph_, rows, force);
     for (int i = 0; i < n; ++i) out_.momentum[i] = out_.momentum[i] - pushed[i];
     out_.linear = !depends(m, kVelocity) && !depends(rows, kVelocity);
+    out_.may_be_indefinite = out_.linear && out_.holonomic.empty();
+    if (out_.may_be_indefinite && quadratic_ == QuadraticBy::kNewton) out_.linear = false;
     if (!out_.linear && !out_.holonomic.empty()) {
       fail(of.place,
            "holonomic constraints with a Lagrangian that is not quadratic "
@@ -651,6 +656,7 @@ class Formulator {
   Graph& graph_;
   std::string_view text_;
   const std::string& file_;
+  QuadraticBy quadratic_;
   Formulation out_;
 };
 
@@ -671,8 +677,11 @@ std::string_view kind_text(const Formulation& formulation) {
   return "";
 }
 
-Formulation formulate(const SceneSource& scene, std::string_view text, const std::string& file) {
-  return Formulator(scene, text, file).run();
+Formulation formulate(const SceneSource& scene,
+                      std::string_view text,
+                      const std::string& file,
+                      QuadraticBy quadratic) {
+  return Formulator(scene, text, file, quadratic).run();
 }
 
 }  // namespace carnot::language

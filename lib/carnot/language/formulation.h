@@ -56,10 +56,11 @@ struct Formulation {
   int algebraic = 0;    // m
   int multipliers = 0;  // k, without those of holonomic constraints
   bool autonomous = true;
-  bool linear = true;         // y is a formula
-  Expression hamiltonian;     // of t, q, p, y
-  SymbolicVector solution;    // y of t, q, p; where linear
-  std::vector<Check> checks;  // of the solution
+  bool linear = true;              // y is a formula
+  bool may_be_indefinite = false;  // a quadratic Lagrangian: its mass is to be looked at
+  Expression hamiltonian;          // of t, q, p, y
+  SymbolicVector solution;         // y of t, q, p; where linear
+  std::vector<Check> checks;       // of the solution
   // x with -H_yy x = b: the factors of the solution again; where linear.
   std::function<SymbolicVector(const SymbolicVector& b)> solve;
   SymbolicVector guess;   // of y, of t, q, p: where Newton's method begins; empty: at zero
@@ -83,7 +84,16 @@ struct Formulation {
 // The word for the kind in reports.
 std::string_view kind_text(const Formulation& formulation);
 
+// How y is found for a Lagrangian that is quadratic in the velocities.
+enum class QuadraticBy {
+  kFormulas,  // where the mass is positive definite on the admissible velocities
+  kNewton     // where it may be indefinite: factors have pivots then
+};
+
 // Throws TextError for scenes that are none of the kinds.
-Formulation formulate(const SceneSource& scene, std::string_view text, const std::string& file);
+Formulation formulate(const SceneSource& scene,
+                      std::string_view text,
+                      const std::string& file,
+                      QuadraticBy quadratic = QuadraticBy::kFormulas);
 
 }  // namespace carnot::language
