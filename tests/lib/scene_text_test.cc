@@ -172,7 +172,7 @@ TEST(SceneText, JuxtapositionMultiplies) {
     const language::SceneSource source = language::read_scene(
         "coordinates x\nparameters k = 3\nreport r = " + formula + "\n", "test", "test");
     const std::vector<double> at{0, 2};  // t, x
-    return source.graph->evaluate(source.reports[0].value, at);
+    return source.graph->evaluate(source.reports[0].values[0], at);
   };
   EXPECT_EQ(value("2 x"), 4);
   EXPECT_EQ(value("2x k"), 12);
@@ -227,6 +227,16 @@ TEST(SceneText, CommentsUnitsAndTexts) {
   EXPECT_EQ(scene.info().extremes[0].unit, "rad");
   const double q[] = {0.5, 2};
   EXPECT_EQ(scene.info().extremes[0].value(q), -1.5);
+}
+
+TEST(SceneText, ReportsTheLargestOfSeveral) {
+  const TextScene scene = scene_from_text(
+      "coordinates x, y\nkinetic = (x'^2 + y'^2)/2\nreport reach = x, -2 y, x + y\n");
+  ASSERT_EQ(scene.info().extremes.size(), 1u);
+  const double far[] = {3, 1};
+  EXPECT_EQ(scene.info().extremes[0].value(far), 4);
+  const double up[] = {-1, 2};
+  EXPECT_EQ(scene.info().extremes[0].value(up), -4);
 }
 
 }  // namespace

@@ -13,10 +13,12 @@
 #include "carnot/load_scene.h"
 #include "carnot/make_dynamics.h"
 #include "carnot/scenes/appell.h"
+#include "carnot/scenes/bicycle.h"
 #include "carnot/scenes/boat.h"
 #include "carnot/scenes/kapitza_pendulum.h"
 #include "carnot/scenes/magnetic_particle.h"
 #include "carnot/scenes/relativistic_particle.h"
+#include "carnot/scenes/trailers.h"
 #include "carnot/system/system_functions.h"
 #include "carnot/transcription/transcription_functions.h"
 #include "catalogue/scene_choice.h"
@@ -42,6 +44,10 @@ Dynamics twin_of(const std::string& name, const char* method) {
   if (name == "kapitza-pendulum") return make_dynamics(scenes::KapitzaPendulum{}, method);
   if (name == "relativistic-particle") return make_dynamics(scenes::RelativisticParticle{}, method);
   if (name == "magnetic-particle") return make_dynamics(scenes::MagneticParticle{}, method);
+  if (name == "bicycle") return make_dynamics(scenes::Bicycle{}, method);
+  if (name == "trailer1") return make_dynamics(scenes::Trailers<1>{}, method);
+  if (name == "trailer2") return make_dynamics(scenes::Trailers<2>{}, method);
+  if (name == "trailer3") return make_dynamics(scenes::Trailers<3>{}, method);
   return apps::find_scene(name).make({}, method);
 }
 
@@ -104,6 +110,16 @@ TEST_P(TextDescriptions, AreThoseOfTheTwin) {
     EXPECT_EQ(scene_.parameters()[i].range.text(), entry_.parameters[i].range.text());
   }
   EXPECT_EQ(scene_.holonomic(), entry_.holonomic);
+  ASSERT_EQ(text.extremes.size(), twin.extremes.size());
+  for (std::size_t i = 0; i < twin.extremes.size(); ++i) {
+    EXPECT_EQ(text.extremes[i].name, twin.extremes[i].name);
+    EXPECT_EQ(text.extremes[i].unit, twin.extremes[i].unit);
+    std::vector<double> q;
+    for (int j = 0; j < scene_.dof(); ++j) q.push_back(std::sin(1 + 3 * j));
+    EXPECT_NEAR(std::abs(text.extremes[i].value(q.data())),
+                std::abs(twin.extremes[i].value(q.data())),
+                kRoundOff);
+  }
 }
 
 class TextTwins : public ::testing::TestWithParam<std::string> {

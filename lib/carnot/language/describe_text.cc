@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -209,9 +210,14 @@ SceneInfo describe_text(const SceneSource& scene, const Formulation& formulation
   // The formulas of a generalized Hamiltonian scene are in z, which a configuration does not have.
   info.drawing = drawing_of(scene, info.configuration);
   for (const ReportSource& report : scene.reports) {
-    const Numbers of = numbers(scene, {report.value});
-    info.extremes.push_back(
-        {"largest_" + report.name, report.unit, [of](const double* q) { return of.at(q)[0]; }});
+    const Numbers of = numbers(scene, report.values);
+    info.extremes.push_back({"largest_" + report.name, report.unit, [of](const double* q) {
+                               const std::vector<double> values = of.at(q);
+                               return *std::max_element(
+                                   values.begin(), values.end(), [](double a, double b) {
+                                     return std::abs(a) < std::abs(b);
+                                   });
+                             }});
   }
   for (const LimitSource& limit : scene.limits) info.limits.push_back(limit_of(scene, limit));
   return info;

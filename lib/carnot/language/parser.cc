@@ -719,7 +719,7 @@ class Parser {
     scene_.path = point();
   }
 
-  // report hinge [rad] = theta - psi
+  // report hinge [rad] = theta - psi, psi - chi
   void report() {
     const Token name = expect_name("a name for what is reported");
     ReportSource report;
@@ -727,8 +727,11 @@ class Parser {
     report.unit = unit();
     expect("=", "after the name");
     const Place place = now().place;
-    report.value = expression();
-    only_configuration(report.value, place);
+    do {
+      report.values.push_back(expression());
+      only_configuration(report.values.back(), place);
+      if (report.values.size() > kMostItems) fail(place, "there is too much to report");
+    } while (take(","));
     if (report.unit.empty()) report.unit = unit();
     if (report.unit == "angle") report.unit = "rad";
     scene_.reports.push_back(std::move(report));

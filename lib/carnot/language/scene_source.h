@@ -64,7 +64,7 @@ struct DrawingSource {
 struct ReportSource {
   std::string name;
   std::string unit;
-  Expression value;
+  std::vector<Expression> values;  // the largest of them counts
 };
 
 // lower <= value <= upper.
