@@ -114,7 +114,8 @@ class BandedLdlt {
   }
 
   // Rows are padded by zeros, so that the factor goes in whole packs, up to one beyond the end of a
-  // row. Measured with 384 rows: of 9 entries in 5 us where it took 9, of 18 in 13 where it took 19.
+  // row. Measured with 384 rows: of 9 entries in 5 us where it took 9, of 18 in 13 where it
+  // took 19.
   static constexpr int kPack = 8;
 
   int size_;
