@@ -85,9 +85,10 @@ class RowNewton {
   static bool fits(int size) { return size <= RowFactor::kMost; }
 
   // In the lanes `which`, from y, whose rows become the solution where the result is 1, and stay
-  // what they were elsewhere. Each step costs one call
-  // of the tape and one factor.
+  // what they were elsewhere. Each step costs one call of the tape and one factor.
   Lanes solve(Pursuit pursuit, const Lanes& which, double* y) {
+    // Of 2.2 million points on paths with Appell's constraint 2 % are left with these numbers.
+    // Twice as many steps, and shorter ones, took as long.
     constexpr int kMostSteps = 32;
     constexpr double kShortest = 1.0 / 1024;
     const P zero(0.0);

@@ -10,7 +10,9 @@
 // counts the conjugate times in (0, t), even multiplicities too, where the sign of det X does not.
 // On an abnormal extremal as many phases as its corank stay at 0; these are left out. The tangent
 // flow carries the plane from step to step, and its basis is made orthonormal again each time, so
-// that growth of the tangents costs no digits. Source: Arnold, Mathematical Methods of Classical
+// that growth of the tangents costs no digits. Where X and P do not stay of one size, as along an
+// unstable drift, the count is made with scales that change along the path: N does not depend on
+// them. Source: Arnold, Mathematical Methods of Classical
 // Mechanics, appendix 11 (Maslov index).
 //
 // Where coordinates of the start are free, (X, P) are the derivatives by the unknowns x of ends.h.
