@@ -14,11 +14,14 @@ namespace {
 // Random phase points at which H exists, the same for the same system, and H there.
 class Samples {
  public:
-  explicit Samples(const Dynamics& dynamics) : dynamics_(dynamics), z_dot_(2 * dynamics.dof) {
-    constexpr int kTries = 40;
+  static constexpr int kTries = 40;
+
+  // As many as are wanted, of kTries that are tried.
+  explicit Samples(const Dynamics& dynamics, std::size_t wanted = kPoints)
+      : dynamics_(dynamics), z_dot_(2 * dynamics.dof) {
     std::mt19937_64 bits(1);
     std::uniform_real_distribution<double> number(-1, 1);
-    for (int i = 0; i < kTries && points_.size() < kPoints; ++i) {
+    for (int i = 0; i < kTries && points_.size() < wanted; ++i) {
       std::vector<double> z(2 * dynamics.dof);
       for (double& x : z) x = number(bits);
       double h = 0;
@@ -180,7 +183,7 @@ Symmetries find_symmetries(const Dynamics& dynamics) {
 }
 
 bool is_indefinite(const Dynamics& dynamics) {
-  return Samples(dynamics).failure() == RateStatus::kMassNotPositive;
+  return Samples(dynamics, Samples::kTries).failure() == RateStatus::kMassNotPositive;
 }
 
 void check_text(const SceneSource& scene,
