@@ -33,11 +33,10 @@ template <class T>
     }
   }
   for (int i = size - 1; i >= 0; --i) {
-    for (int c = 0; c < columns; ++c) {
-      T sum = b[i * columns + c];
-      for (int j = i + 1; j < size; ++j) sum -= a[i * size + j] * b[j * columns + c];
-      b[i * columns + c] = sum / a[i * size + i];
+    for (int j = i + 1; j < size; ++j) {
+      for (int c = 0; c < columns; ++c) b[i * columns + c] -= a[i * size + j] * b[j * columns + c];
     }
+    for (int c = 0; c < columns; ++c) b[i * columns + c] /= a[i * size + i];
   }
   return true;
 }
