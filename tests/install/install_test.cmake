@@ -21,6 +21,7 @@ foreach(flag -mtune=generic -march=native)
       -B ${WORK_DIR}/build
       -G ${GENERATOR}
       -D CMAKE_BUILD_TYPE=Release
+      -D CMAKE_CXX_FLAGS_RELEASE=-O1
       -D CMAKE_CXX_COMPILER=${CXX_COMPILER}
       -D CMAKE_PREFIX_PATH=${WORK_DIR}/prefix
       -D EIGEN_USER_FLAGS=${flag})
