@@ -36,7 +36,12 @@ TEST(SolveField, AgreesWithSearches) {
   const Field field = unicycles(2);
   ASSERT_TRUE(field.finished);
   ASSERT_EQ(field.action.size(), 17U * 17 * 18);
+  EXPECT_TRUE(field.settled);
+  EXPECT_LT(field.sweeps, 40);
+  EXPECT_EQ(field.checked, 10);
   EXPECT_EQ(field.lower, 0);
+  EXPECT_EQ(field.triangles, 10);
+  EXPECT_EQ(field.violations, 0);
   EXPECT_LT(field.searches, 300);
   for (std::size_t i = 0; i < field.action.size(); ++i) {
     EXPECT_EQ(field.reason[i], Reason::kNone);
@@ -92,6 +97,22 @@ TEST(SolveField, ReachesTheCutLocus) {
     const double z = -0.5 + 0.1 * k;
     EXPECT_NEAR(field.action[(5 * 11 + 5) * 11 + k], 2 * kPi * std::abs(z), 1e-6) << z;
   }
+}
+
+// At theta = pi/2 the chart of the satellite ends: these points have their reason, wherever they
+// are in the grid.
+TEST(SolveField, LeavesOutPointsWhereTheSceneIsIrregular) {
+  FieldOptions options;
+  options.check = 0;
+  const Field field = solve_field(
+      test::satellite({0, 0, 0.1}), {axis(1, kPi / 2, -kPi / 6, 4), axis(0, 0, 0.1, 2)}, options);
+  ASSERT_TRUE(field.finished);
+  for (std::size_t i = 0; i < field.reason.size(); ++i) {
+    EXPECT_EQ(field.reason[i], i < 2 ? Reason::kIrregularEnd : Reason::kNone) << i;
+    EXPECT_EQ(std::isfinite(field.action[i]), i >= 2) << i;
+  }
+  EXPECT_THROW(solve_field(test::satellite({0, 0, 0}), {axis(1, kPi / 2, kPi, 2)}),
+               std::invalid_argument);
 }
 
 // In other units the same.

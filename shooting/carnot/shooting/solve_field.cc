@@ -14,7 +14,9 @@
 #include <utility>
 
 #include "carnot/numerics/parallel.h"
+#include "carnot/shooting/field/cold_searches.h"
 #include "carnot/shooting/field/field_sweep.h"
+#include "carnot/shooting/field/triangles.h"
 #include "carnot/shooting/problem/natural_scales.h"
 #include "carnot/shooting/problem/rescaled.h"
 
@@ -40,14 +42,17 @@ void require(bool ok, const std::string& what) {
   if (!ok) throw std::invalid_argument(what);
 }
 
-void validate(const BoundaryValueProblem& problem, const std::vector<FieldAxis>& axes) {
-  constexpr double kEven = 1e-9;
+void validate(const BoundaryValueProblem& problem) {
   problem.validate();
   require(problem.dynamics.has_transcription() && !has_potential(problem),
           "a field is of a scene with velocity constraints or driftless controls, and without a "
           "potential");
   require(!problem.has_free_ends(), "the ends of a field are not free");
   require(problem.limits.empty(), "a field keeps to no limits");
+}
+
+void validate(const BoundaryValueProblem& problem, const std::vector<FieldAxis>& axes) {
+  constexpr double kEven = 1e-9;
   require(!axes.empty(), "a field has at least one axis");
   for (const FieldAxis& axis : axes) {
     require(axis.coordinate >= 0 && axis.coordinate < problem.dynamics.dof && !axis.values.empty(),
@@ -60,6 +65,36 @@ void validate(const BoundaryValueProblem& problem, const std::vector<FieldAxis>&
     }
     require(even, "the values of an axis are not equidistant");
   }
+}
+
+FieldGrid grid_of(const BoundaryValueProblem& problem,
+                  const std::vector<FieldAxis>& axes,
+                  bool mod_angles) {
+  constexpr double kRounded = 1e-9;
+  FieldGrid grid;
+  grid.to = problem.to;
+  for (const FieldAxis& axis : axes) {
+    FieldGrid::Axis one{axis.coordinate, axis.values, false, 0};
+    if (mod_angles) one.period = problem.dynamics.info.configuration[axis.coordinate].period;
+    if (one.period > 0 && axis.values.size() > 2) {
+      const double step = std::abs(axis.values[1] - axis.values[0]);
+      const double covered = step * static_cast<double>(axis.values.size());
+      one.around = std::abs(covered - one.period) <= kRounded * one.period;
+    }
+    grid.axes.push_back(std::move(one));
+  }
+  return grid;
+}
+
+// The same problem to the first point of the grid at which the scene is regular; without any, to
+// the first one.
+BoundaryValueProblem to_a_regular_point(BoundaryValueProblem problem, const FieldGrid& grid) {
+  for (long i = 0; i < grid.size(); ++i) {
+    problem.to = grid.target(i);
+    if (end_status(problem.dynamics, problem.to) == RateStatus::kOk) return problem;
+  }
+  problem.to = grid.target(0);
+  return problem;
 }
 
 // With at most `found` of `tried` trials a success, the share of successes is less than this with
@@ -84,11 +119,11 @@ double upper_share(long found, long tried) {
 class FieldSolver {
  public:
   FieldSolver(const BoundaryValueProblem& problem,
-              const std::vector<FieldAxis>& axes,
+              const FieldGrid& grid,
               const FieldOptions& options)
       : own_(problem),
         options_(options),
-        own_grid_(grid_of(axes)),
+        own_grid_(grid),
         scales_(scales_of()),
         scaled_(rescaled(own_, scales_)),
         grid_(in_scales()),
@@ -104,31 +139,16 @@ class FieldSolver {
     field.pushes = counts.pushes;
     field.improved = counts.improved;
     field.flows = counts.flows;
+    field.sweeps = counts.sweeps;
+    field.settled = settled_;
+    for (const long i : sweep_.doubtful()) field.unkept += sweep_.points().known(i) ? 1 : 0;
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - began;
     field.elapsed_seconds = elapsed.count();
     return field;
   }
 
  private:
-  [[nodiscard]] FieldGrid grid_of(const std::vector<FieldAxis>& axes) const {
-    constexpr double kRounded = 1e-9;
-    FieldGrid grid;
-    grid.to = own_.to;
-    for (const FieldAxis& axis : axes) {
-      FieldGrid::Axis one{axis.coordinate, axis.values, false, 0};
-      if (options_.search.mod_angles) {
-        one.period = own_.dynamics.info.configuration[axis.coordinate].period;
-      }
-      if (one.period > 0 && axis.values.size() > 2) {
-        const double step = std::abs(axis.values[1] - axis.values[0]);
-        const double covered = step * static_cast<double>(axis.values.size());
-        one.around = std::abs(covered - one.period) <= kRounded * one.period;
-      }
-      grid.axes.push_back(std::move(one));
-    }
-    return grid;
-  }
-  // Those of the farthest corner.
+  // Those of the farthest corner, where the scene is regular there.
   [[nodiscard]] NaturalScales scales_of() const {
     BoundaryValueProblem farthest = own_;
     for (const FieldGrid::Axis& axis : own_grid_.axes) {
@@ -137,7 +157,8 @@ class FieldSolver {
       const double b = axis.values.back();
       farthest.to[axis.coordinate] = std::abs(a - start) > std::abs(b - start) ? a : b;
     }
-    return natural_scales(farthest);
+    const bool regular = end_status(farthest.dynamics, farthest.to) == RateStatus::kOk;
+    return natural_scales(regular ? farthest : own_);
   }
   [[nodiscard]] FieldGrid in_scales() const {
     FieldGrid grid = own_grid_;
@@ -148,26 +169,23 @@ class FieldSolver {
     return grid;
   }
 
-  // What searches gave, by points; the work is done by all threads.
-  std::map<long, GeodesicReport> search(const std::vector<long>& points, std::uint64_t seed) {
-    std::vector<GeodesicReport> reports(points.size());
+  [[nodiscard]] GeodesicOptions searching(std::uint64_t seed) {
     GeodesicOptions search = options_.search;
-    search.count = 1;
-    search.all = false;
-    search.samples = 0;
-    search.abnormal = false;  // momenta are what a field is made of
-    search.threads = 1;
     search.seed = seed;
     search.progress = [this](double) { return go_on(); };
-    parallel_for(static_cast<int>(points.size()), thread_count(options_.threads), [&](int k) {
-      BoundaryValueProblem problem = own_;
-      problem.to = own_grid_.target(points[k]);
-      try {
-        reports[k] = find_geodesics(problem, search);
-      } catch (const std::invalid_argument&) {  // e.g. dependent constraints at the target
-        reports[k].reason = Reason::kIrregularEnd;
-      }
-    });
+    return search;
+  }
+  // What searches gave, by points; the work is done by all threads.
+  std::map<long, GeodesicReport> search(const std::vector<long>& points, std::uint64_t seed) {
+    auto reports = cold_searches(
+        points.size(),
+        [&](std::size_t k) {
+          BoundaryValueProblem problem = own_;
+          problem.to = own_grid_.target(points[k]);
+          return problem;
+        },
+        searching(seed),
+        options_.threads);
     std::map<long, GeodesicReport> found;
     for (std::size_t k = 0; k < points.size(); ++k) found[points[k]] = std::move(reports[k]);
     return found;
@@ -205,7 +223,9 @@ class FieldSolver {
       known_ = known;
       return go_on();
     };
-    return sweep_.spread(thread_count(options_.threads), progress) && !stopped_;
+    const Spread spread = sweep_.spread(thread_count(options_.threads), progress);
+    settled_ = spread == Spread::kSettled;
+    return spread != Spread::kStopped && !stopped_;
   }
 
   // Points spread evenly: additive recurrences with powers of the root of x^(d + 1) = x + 1.
@@ -270,10 +290,10 @@ class FieldSolver {
     }
   }
 
-  // A random sample, searched with another seed. What is lower is spread, and another sample drawn.
+  // A random sample, searched with another seed, and the triangles between it and neighbours. What
+  // is lower is spread, and another sample drawn.
   bool check(Field& field) {
     constexpr int kRounds = 4;
-    constexpr double kLower = 1e-8;
     const long count = std::min(options_.check, grid_.size());
     std::seed_seq sequence{options_.search.seed, options_.search.seed >> 32U, std::uint64_t{1}};
     std::mt19937_64 random(sequence);
@@ -282,25 +302,44 @@ class FieldSolver {
       while (static_cast<long>(sample.size()) < count) {
         sample.insert(static_cast<long>(random() % static_cast<std::uint64_t>(grid_.size())));
       }
-      const auto found = search({sample.begin(), sample.end()},
-                                options_.search.seed + 1 + static_cast<std::uint64_t>(round));
+      const std::uint64_t seed = options_.search.seed + 1 + static_cast<std::uint64_t>(round);
+      auto found = check({sample.begin(), sample.end()}, seed, field);
       if (stopped_) return false;
-      field.checked = count;
-      field.lower = 0;
-      for (const auto& [i, report] : found) {
-        if (report.geodesics.empty()) continue;
-        const double action = report.geodesics[0].action;
-        if (action < (1 - kLower) * action_of(i)) ++field.lower;
-      }
-      field.bound = upper_share(field.lower, field.checked);
-      if (field.lower == 0 || round + 1 == kRounds) return true;
+      if (field.lower + field.violations == 0 || round + 1 == kRounds) return true;
       if (take(found) > 0 && !(spread() && settle_doubts())) return false;
     }
     return true;
   }
+  // What searches gave to these points, and to those that violate a triangle.
+  std::map<long, GeodesicReport> check(const std::vector<long>& sample,
+                                       std::uint64_t seed,
+                                       Field& field) {
+    constexpr double kLower = 1e-8;
+    auto found = search(sample, seed);
+    const Triangles triangles = check_triangles(
+        own_,
+        own_grid_,
+        [this](long i) { return action_of(i); },
+        sample,
+        searching(seed),
+        seed,
+        options_.threads);
+    field.triangles = triangles.tried;
+    field.violations = static_cast<long>(triangles.beyond.size());
+    field.checked = static_cast<long>(sample.size());
+    field.lower = 0;
+    for (const auto& [i, report] : found) {
+      if (report.geodesics.empty()) continue;
+      if (report.geodesics[0].action < (1 - kLower) * action_of(i)) ++field.lower;
+    }
+    field.bound = upper_share(field.lower, field.checked);
+    found.merge(search(triangles.beyond, seed));
+    return found;
+  }
 
   // In the units of the scene; infinite where nothing is known.
   [[nodiscard]] double action_of(long i) const {
+    if (own_grid_.target(i) == own_.from) return 0;
     double action = std::numeric_limits<double>::infinity();
     if (sweep_.points().known(i)) action = sweep_.points().action(i) * scales_.action;
     const auto found = found_.find(i);
@@ -385,7 +424,7 @@ class FieldSolver {
 
   const BoundaryValueProblem& own_;
   const FieldOptions& options_;
-  FieldGrid own_grid_;
+  const FieldGrid& own_grid_;
   NaturalScales scales_;
   BoundaryValueProblem scaled_;
   FieldGrid grid_;
@@ -395,6 +434,7 @@ class FieldSolver {
   std::map<long, Reason> failed_;
   std::set<long> tried_;
   long searches_ = 0;
+  bool settled_ = true;
   std::atomic<double> known_{0};
   std::atomic<bool> stopped_{false};
 };
@@ -404,9 +444,15 @@ class FieldSolver {
 Field solve_field(const BoundaryValueProblem& problem,
                   const std::vector<FieldAxis>& axes,
                   const FieldOptions& options) {
+  require(static_cast<int>(problem.to.size()) == problem.dynamics.dof,
+          "the target of a field has " + std::to_string(problem.to.size()) +
+              " components, the scene has " + std::to_string(problem.dynamics.dof));
   validate(problem, axes);
-  options.search.validate(problem);
-  return FieldSolver(problem, axes, options).run();
+  const FieldGrid grid = grid_of(problem, axes, options.search.mod_angles);
+  const BoundaryValueProblem regular = to_a_regular_point(problem, grid);
+  validate(regular);
+  options.search.validate(regular);
+  return FieldSolver(regular, grid, options).run();
 }
 
 }  // namespace carnot

@@ -23,13 +23,18 @@ struct FieldAxis {
 struct FieldOptions {
   GeodesicOptions search;  // of the searches; `mod_angles` and `tolerance` are of the whole
   int threads = 0;         // 0: all cores
-  long check = 100;        // points that are searched once more in the end, with another seed
-  Progress progress;       // fraction of points known; returns false to stop
+  // Points that are searched once more in the end, with another seed, and from which a neighbour is
+  // searched for the triangle inequality.
+  long check = 100;
+  Progress progress;  // fraction of points known; returns false to stop
 };
 
 // Of all points, the first axis slowest. What is not known of a point is NaN.
 struct Field {
   bool finished = false;  // false: stopped
+  // False where values still fell when the sweeps were ended, after 200 of them; most fields need
+  // some ten. They may be too large then, which the checks below tell as of others.
+  bool settled = true;
   int dof = 0;
   std::vector<double> action;
   std::vector<double> p0;  // n of each point
@@ -44,9 +49,15 @@ struct Field {
   long pushes = 0;    // neighbours that promised less,
   long improved = 0;  // and that kept it
   long flows = 0;     // tangent flows
-  long checked = 0;   // points searched again,
-  long lower = 0;     // and where that found less by more than 1e-8, relative
-  double bound = 1;   // of the share of such points, with 95 per cent confidence
+  long sweeps = 0;    // of the longest spread
+  // Three figures tell how far the field can be trusted. Points to which a neighbour promised less,
+  // by more than 1e-6 of it, where Newton's method found nothing and a search nothing better;
+  long unkept = 0;
+  long triangles = 0;   // pairs of neighbours with a path between them that was searched,
+  long violations = 0;  // and points that are farther by more than 1e-8 than by way of the other;
+  long checked = 0;     // points searched again,
+  long lower = 0;       // and where that found less by more than 1e-8, relative
+  double bound = 1;     // of the share of such points, with 95 per cent confidence
   double elapsed_seconds = 0;
 };
 

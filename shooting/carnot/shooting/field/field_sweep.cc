@@ -18,26 +18,11 @@ constexpr double kSquared = 1e-6;
 
 }  // namespace
 
-long FieldGrid::size() const {
-  long size = 1;
-  for (const Axis& axis : axes) size *= static_cast<long>(axis.values.size());
-  return size;
-}
-
-std::vector<double> FieldGrid::target(long i) const {
-  std::vector<double> q = to;
-  for (std::size_t a = axes.size(); a-- > 0;) {
-    const auto count = static_cast<long>(axes[a].values.size());
-    q[axes[a].coordinate] = axes[a].values[i % count];
-    i /= count;
-  }
-  return q;
-}
-
 FieldCounts& FieldCounts::operator+=(const FieldCounts& other) {
   pushes += other.pushes;
   improved += other.improved;
   flows += other.flows;
+  sweeps = std::max(sweeps, other.sweeps);
   return *this;
 }
 
@@ -171,27 +156,11 @@ FieldSweep::Neighbour FieldSweep::neighbour(long i,
                                             const FieldPoint& point,
                                             std::size_t axis,
                                             int direction) const {
-  Neighbour result;
-  long stride = 1;
-  for (std::size_t a = grid_.axes.size(); --a > axis;) {
-    stride *= static_cast<long>(grid_.axes[a].values.size());
-  }
-  const FieldGrid::Axis& along = grid_.axes[axis];
-  const auto count = static_cast<long>(along.values.size());
-  const long at = i / stride % count;
-  long next = at + direction;
-  int turns = 0;
-  if (next < 0 || next >= count) {
-    if (!along.around || count < 3) return result;
-    turns = next < 0 ? -1 : 1;
-    next -= turns * count;
-  }
-  result.index = i + (next - at) * stride;
-  result.windings = point.windings;
-  result.dq = SmallVector::Zero(n_);
-  const double up = along.values.back() > along.values.front() ? 1 : -1;
-  if (turns != 0) result.windings[axis] += static_cast<int>(up) * turns;
-  result.dq[along.coordinate] = along.values[next] - along.values[at] + up * turns * along.period;
+  const FieldGrid::Step step = grid_.step(i, axis, direction);
+  if (step.index < 0) return {};
+  Neighbour result{step.index, point.windings, SmallVector::Zero(n_)};
+  result.windings[axis] += step.turns;
+  result.dq[grid_.axes[axis].coordinate] = step.length;
   return result;
 }
 
@@ -287,20 +256,19 @@ void FieldSweep::cross(long layer, FieldCounts& counts) {
   }
 }
 
-bool FieldSweep::spread(int threads, const Progress& progress) {
+Spread FieldSweep::spread(int threads, const Progress& progress, int most_sweeps) {
   constexpr long kSlabs = 16;
-  constexpr int kMostSweeps = 200;
   const long slabs = std::clamp(layers_ / 2, 1L, kSlabs);
   const auto begin = [&](long slab) { return slab * layers_ / slabs; };
   int quiet = 0;  // sweeps without an improvement
   double known = 0;
   const auto goes_on = [&] { return !progress || progress(known); };
-  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
     std::vector<FieldCounts> counts(slabs);
     parallel_for(static_cast<int>(slabs), threads, [&](int slab) {
       sweep_slab(begin(slab), begin(slab + 1), sweep % 2 == 0, goes_on, counts[slab]);
     });
-    if (!goes_on()) return false;
+    if (!goes_on()) return Spread::kStopped;
     // Borders of every second pair of slabs, then the others; around, the last and the first.
     for (const long parity : {0L, 1L}) {
       parallel_for(static_cast<int>(slabs), threads, [&](int slab) {
@@ -315,12 +283,13 @@ bool FieldSweep::spread(int threads, const Progress& progress) {
     }
     // Who improved was told to its neighbours in this sweep, or will be in the next one.
     quiet = improved == 0 ? quiet + 1 : 0;
-    if (quiet == 2) return true;
+    counts_.sweeps = std::max(counts_.sweeps, sweep + 1L);
+    if (quiet == 2) return Spread::kSettled;
     long count = 0;
     for (long i = 0; i < points_.size(); ++i) count += points_.known(i) ? 1 : 0;
     known = static_cast<double>(count) / static_cast<double>(points_.size());
   }
-  return true;
+  return Spread::kTired;
 }
 
 std::vector<long> FieldSweep::doubtful() const {

@@ -19,35 +19,30 @@
 #include <vector>
 
 #include "carnot/shooting/boundary_value_problem.h"
+#include "carnot/shooting/field/field_grid.h"
 #include "carnot/shooting/field/field_store.h"
 
 namespace carnot::internal {
-
-// The targets: a grid of some coordinates, all others those of `to`.
-struct FieldGrid {
-  struct Axis {
-    int coordinate = 0;
-    std::vector<double> values;  // equidistant
-    bool around = false;         // the last is a neighbour of the first one, a period away
-    double period = 0;           // of the coordinate; 0: none
-  };
-  std::vector<double> to;
-  std::vector<Axis> axes;  // the first one slowest
-
-  [[nodiscard]] long size() const;
-  // The target of point i, without windings.
-  [[nodiscard]] std::vector<double> target(long i) const;
-};
 
 struct FieldCounts {
   long pushes = 0;    // that promised less
   long improved = 0;  // of these
   long flows = 0;     // tangent flows
+  long sweeps = 0;    // of the longest spread
   FieldCounts& operator+=(const FieldCounts& other);
+};
+
+// How a spread ended.
+enum class Spread {
+  kSettled,  // nothing changes any more
+  kTired,    // it still changes after the most sweeps that were allowed
+  kStopped,  // by its caller
 };
 
 class FieldSweep {
  public:
+  static constexpr int kMostSweeps = 200;
+
   // Of a scene without drift or potential, whose action is H T. Keeps references.
   FieldSweep(const BoundaryValueProblem& problem, const FieldGrid& grid);
 
@@ -57,9 +52,9 @@ class FieldSweep {
   // Takes an extremal to point i that was found otherwise, where it is better. False where it
   // does not lead there, or is no better.
   bool seed(long i, const std::vector<double>& p0, const std::vector<int>& windings, int origin);
-  // Sweeps until nothing changes. False when stopped; `progress` is told by all threads, the
-  // fraction that was known after the last sweep.
-  bool spread(int threads, const Progress& progress);
+  // Sweeps until nothing changes, at most so often. `progress` is told by all threads, the fraction
+  // that was known after the last sweep.
+  Spread spread(int threads, const Progress& progress, int most_sweeps = kMostSweeps);
   // Points that neighbours promised less than they have, in vain, or which have nothing.
   [[nodiscard]] std::vector<long> doubtful() const;
   // max |q(T) - target| of a flow of twice as many steps, in these units; infinite where it fails.

@@ -1,0 +1,55 @@
+#include "carnot/shooting/field/field_sweep.h"
+
+#include <gtest/gtest.h>
+
+#include "carnot/shooting/find_geodesics.h"
+#include "shooting/problems.h"
+
+namespace carnot::internal::field_sweep_test {
+namespace {
+
+// Of the Heisenberg group, along y = 0 at one height, across the axis of conjugate points.
+struct AcrossTheAxis : testing::Test {
+  const BoundaryValueProblem problem = test::heisenberg_group({0.25, 0, 0.5});
+  const FieldGrid grid{{0, 0, 0.5}, {{0, {0.25, 0.15, 0.05, -0.05, -0.15, -0.25}, false, 0}}};
+  FieldSweep sweep{problem, grid};
+
+  void SetUp() override {
+    const GeodesicReport report = find_geodesics(problem);
+    ASSERT_TRUE(sweep.seed(0, report.geodesics.at(0).p0, {0}, 0));
+  }
+};
+
+// Beyond the axis the extremal goes on as a circle and some more, behind its conjugate point: det J
+// has changed its sign, and the mirror image of the way to the other side is shorter.
+TEST_F(AcrossTheAxis, DoesNotCarryAnExtremalBeyondItsConjugatePoint) {
+  ASSERT_EQ(sweep.spread(1, {}), Spread::kSettled);
+  for (const long i : {0L, 1L, 2L}) EXPECT_TRUE(sweep.points().known(i)) << i;
+  for (const long i : {3L, 4L, 5L}) EXPECT_FALSE(sweep.points().known(i)) << i;
+  EXPECT_EQ(sweep.doubtful(), (std::vector<long>{3, 4, 5}));
+}
+
+TEST_F(AcrossTheAxis, SaysWhereSweepsWereNotEnough) {
+  EXPECT_EQ(sweep.spread(1, {}, 1), Spread::kTired);
+  EXPECT_EQ(sweep.spread(1, {}), Spread::kSettled);
+  EXPECT_EQ(sweep.spread(1, [](double) { return false; }), Spread::kStopped);
+}
+
+TEST(FieldGrid, StepsToNeighbours) {
+  constexpr double kTurn = 6;
+  const FieldGrid grid{
+      {0, 7, 0}, {{0, {1, 2}, false, kTurn}, {2, {4, 2, 0}, true, kTurn}, {1, {5}, false, 0}}};
+  EXPECT_EQ(grid.size(), 6);
+  EXPECT_EQ(grid.target(4), (std::vector<double>{2, 5, 2}));
+  EXPECT_EQ(grid.step(1, 0, 1).index, 4);
+  EXPECT_EQ(grid.step(1, 0, 1).length, 1);
+  EXPECT_EQ(grid.step(1, 0, -1).index, -1);
+  EXPECT_EQ(grid.step(1, 2, 1).index, -1);
+  const FieldGrid::Step around = grid.step(3, 1, -1);  // beyond 4 on a falling axis is 0, or 6
+  EXPECT_EQ(around.index, 5);
+  EXPECT_EQ(around.turns, 1);
+  EXPECT_EQ(around.length, 2);
+}
+
+}  // namespace
+}  // namespace carnot::internal::field_sweep_test
