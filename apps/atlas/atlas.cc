@@ -12,9 +12,11 @@
 #include "atlas/atlas_plot.h"
 #include "atlas/atlas_record.h"
 #include "atlas/crew.h"
+#include "atlas/field_report.h"
 #include "atlas/journal.h"
 #include "atlas/models.h"
 #include "atlas/problem_list.h"
+#include "carnot/shooting/distance_field.h"
 #include "carnot/shooting/solve_field.h"
 #include "carnot/shooting/solve_many.h"
 #include "catalogue/scene_choice.h"
@@ -40,10 +42,12 @@ same in any order and on any number of threads. Problems come from one of
 The result has one row (.csv), line (.jsonl) or entry of each data set (.h5, shaped like the grid) for
 each. What is done is kept in OUTPUT.journal until all is: after Ctrl-C, a kill or a full disk the same
 call with --resume goes on, and writes what an undisturbed one would have written, but for `seconds`,
-which --no-times leaves out.
+which --no-times leaves out. Lines may have been added to the file of problems since, or N may be more.
 With --field the points of a grid are reached from their neighbours by Newton's method, and only some
-are searched: thousands a second on each core. It keeps the geodesic of least action, says how many of
---check points had less when they were searched again, and is not resumed.
+are searched: thousands a second on each core. It keeps the geodesic of least action, and is not
+resumed. Three figures tell how far it can be trusted: promises of less by a neighbour that were not
+kept, triangles between neighbours that are violated, and points that had less when --check of them were
+searched again. A FILE.field has distances alone, for planners: DistanceField in C++ reads it.
 In a build with CARNOT_MPI=ON the same call works on many ranks, under mpirun or srun; a field is
 solved by one of them. docs/clusters.md says how, and what to expect.
 
@@ -51,10 +55,13 @@ Examples
   carnot atlas vehicle --problems poses.csv --output parked.csv
   carnot atlas unicycle --from 0,0,0 --grid 'x=-3:3:13, y=-3:3:13, theta=-pi:pi:12' --output field.h5
   carnot atlas unicycle --from 0,0,0 --grid 'x=-3:3:61, y=-3:3:61, theta=-pi:pi:36' --field --mod-angles --output field.h5
+  carnot atlas unicycle --from 0,0,0 --grid 'x=-3:3:61, y=-3:3:61, theta=-pi:pi:36' --field --mod-angles --output left.field
   carnot atlas trailer1 --random 1000 --seed 7 --output random.jsonl
 
 Exit status: 0 all were tried, 1 a file could not be written, 2 bad input or another call's journal,
 130 interrupted: --resume goes on.)";
+
+constexpr const char* kDistances = ".field";  // the ending of a DistanceField
 
 struct AtlasCall {
   RunOptions run;
@@ -76,7 +83,8 @@ long chunk_of(long problems) {
   return std::clamp(problems / kChunks, 1L, kLargest);
 }
 
-Json identity_of(const AtlasCall& call, const Run& run, const ProblemList& list) {
+// With the list as `problems` says.
+Json identity_of(const AtlasCall& call, const Run& run, Json problems) {
   const SearchOptions& search = call.search;
   return {{"version", kVersion},
           {"scene", run.entry->info.name},
@@ -97,7 +105,7 @@ Json identity_of(const AtlasCall& call, const Run& run, const ProblemList& list)
             {"discs", search.asked.discs},
             {"trajectories", call.trajectories},
             {"field", call.field}}},
-          {"problems", list.identity()}};
+          {"problems", std::move(problems)}};
 }
 
 // What came of all of them.
@@ -163,13 +171,15 @@ class Atlas {
  private:
   int work_on_list(Ranks& ranks) {
     const auto began = std::chrono::steady_clock::now();
-    const CrewWork work = crew_work(run_.threads > 0 ? run_.threads : ranks.threads());
+    const int threads = run_.threads > 0 ? run_.threads : ranks.threads();
     if (!ranks.leads()) {
-      if (!ranks.agree(false)) return kSuccess;
-      return follow(ranks, work) ? kSuccess : kInterrupted;
+      const long chunk = ranks.agree(0);
+      return chunk == 0 || follow(ranks, crew_work(chunk, threads)) ? kSuccess : kInterrupted;
     }
-    const auto opened = open_journal(ranks, work.chunks());
+    const auto opened = open_journal(ranks);
     Journal& journal = *opened;
+    const CrewWork work = crew_work(journal.words().at("chunk"), threads);
+    work.drop_parts(journal);
     const long resumed = work.done(journal);
     if (!lead(ranks, work, journal, run_.destination.quiet)) {
       return interrupted_after(journal, work);
@@ -189,7 +199,7 @@ class Atlas {
   int work_on_field() {
     std::vector<FieldAxis> axes;
     for (const Axis& axis : list_->axes()) axes.push_back({axis.coordinate, axis.values});
-    const AtlasProblem first = problem(0);
+    const BoundaryValueProblem asked = problem_between(run_.dynamics, problem(0).ends);
     FieldOptions options;
     options.search = options_;
     options.threads = run_.threads;
@@ -198,32 +208,27 @@ class Atlas {
     {
       ProgressBar bar("points", static_cast<double>(list_->size()), run_.destination.quiet);
       options.progress = bar.callback();
-      field = solve_field(problem_between(run_.dynamics, first.ends), axes, options);
+      field = solve_field(asked, axes, options);
     }
     if (!field.finished) return kInterrupted;
-    const Summary summary = write([&](const auto& visit) {
+    const auto records = [&](const auto& visit) {
       for (long i = 0; i < list_->size(); ++i) visit(field_record(i, problem(i), field));
-    });
+    };
+    Summary summary;
+    if (has_ending(call_.output, kDistances)) {
+      records([&](const Json& record) { note(record, summary); });
+      NewFile file(call_.output);
+      DistanceField(asked, axes, options_.mod_angles, field).write(file.temporary());
+      file.finish();
+    } else {
+      summary = write(records);
+    }
     Result result;
     result.json = summary_json(summary, 0, 0);
-    result.json["field"] = {{"searches", field.searches},
-                            {"pushes", field.pushes},
-                            {"improved", field.improved},
-                            {"tangent_flows", field.flows},
-                            {"checked", field.checked},
-                            {"lower", field.lower},
-                            {"bound", field.bound}};
+    result.json["field"] = field_json(field);
     result.json["elapsed_seconds"] = field.elapsed_seconds;
     result.text = [&] {
-      return atlas_text(result.json) +
-             fmt::format(
-                 "{} searches, the rest from neighbours; of {} points searched again {} had "
-                 "less: at most {:.2g} of all, with 95 % confidence\nwritten: {}\n",
-                 field.searches,
-                 field.checked,
-                 field.lower,
-                 field.bound,
-                 call_.output);
+      return atlas_text(result.json) + field_text(field) + "written: " + call_.output + '\n';
     };
     return deliver_with_plot(result);
   }
@@ -245,6 +250,19 @@ class Atlas {
     if (list_->has_free() || run_.samples > 0 || call_.resume) {
       refuse("--field", "", "does without free ends, --trajectories and --resume", "none of these");
     }
+    if (has_ending(call_.output, kDistances)) check_distances();
+  }
+
+  void check_distances() const {
+    const std::vector<Axis> axes = list_->axes();
+    const bool long_enough = std::all_of(
+        axes.begin(), axes.end(), [](const Axis& axis) { return axis.values.size() >= 3; });
+    if (static_cast<int>(axes.size()) != run_.dynamics.dof || !long_enough) {
+      refuse("--output",
+             call_.output,
+             "distances are between points of the whole space",
+             "a --grid of all coordinates with 3 values each, or .h5, .csv, .jsonl");
+    }
   }
 
   [[nodiscard]] Json summary_json(const Summary& summary, long resumed, long repaired) const {
@@ -264,7 +282,9 @@ class Atlas {
 
   void check_output() const {
     if (call_.output.empty()) refuse_missing("--output", "a file ending in .h5, .csv or .jsonl");
-    check_output_file("--output", call_.output, {".h5", ".csv", ".jsonl"});
+    std::vector<std::string> endings{".h5", ".csv", ".jsonl"};
+    if (call_.field) endings.emplace_back(kDistances);
+    check_output_file("--output", call_.output, endings);
   }
 
   [[nodiscard]] AtlasProblem problem(long i) const {
@@ -273,22 +293,33 @@ class Atlas {
     return problem;
   }
 
-  // Throws where there is none; the other ranks are told.
-  std::unique_ptr<Journal> open_journal(Ranks& ranks, long chunks) const {
+  // Throws where there is none; the other ranks are told, and what a chunk is. A journal that was
+  // begun with a shorter list keeps its chunks.
+  std::unique_ptr<Journal> open_journal(Ranks& ranks) const {
+    const auto words = [this](const Json& problems, const Json& chunk) {
+      Json json = identity_of(call_, run_, problems);
+      json["chunk"] = chunk;
+      return json;
+    };
+    const auto chunk_in = [](const Json& there) { return there.value("chunk", Json(nullptr)); };
+    JournalCall call;
+    call.words = words(list_->identity(), chunk_of(list_->size()));
+    call.then = [&](const Json& there) {
+      return words(list_->identity_then(there.value("problems", Json::object())), chunk_in(there));
+    };
+    call.now = [&](const Json& there) { return words(list_->identity(), chunk_in(there)); };
     try {
-      auto journal = std::make_unique<Journal>(
-          call_.output + ".journal", identity_of(call_, run_, *list_), chunks, call_.resume);
-      (void)ranks.agree(true);
+      auto journal = std::make_unique<Journal>(call_.output + ".journal", call, call_.resume);
+      (void)ranks.agree(journal->words().at("chunk").get<long>());
       return journal;
     } catch (...) {
-      (void)ranks.agree(false);
+      (void)ranks.agree(0);
       throw;
     }
   }
 
   // On so many threads of this process.
-  [[nodiscard]] CrewWork crew_work(int threads) const {
-    const long chunk = chunk_of(list_->size());
+  [[nodiscard]] CrewWork crew_work(long chunk, int threads) const {
     return {
         list_->size(),
         chunk,
@@ -350,20 +381,24 @@ class Atlas {
     layout.limited = !problem(0).ends.limits.empty();
     layout.times = !call_.no_times;
     layout.free_ends = list_->has_free();
-    layout.head = identity_of(call_, run_, *list_);
+    layout.head = identity_of(call_, run_, list_->identity());
     Summary summary;
     NewFile file(call_.output);
     {
       const auto writer = make_atlas_writer(file.temporary(), call_.output, layout);
       records([&](const Json& record) {
-        count(record, summary);
-        if (plot_) plot_->add(record);
+        note(record, summary);
         writer->add(record);
       });
       writer->finish();
     }
     file.finish();
     return summary;
+  }
+
+  void note(const Json& record, Summary& summary) const {
+    count(record, summary);
+    if (plot_) plot_->add(record);
   }
 
   template <class Visit>
@@ -410,7 +445,7 @@ void add_atlas(CLI::App& app, Invocation& invocation) {
       call->trajectories,
       "N",
       "times of each path to keep, both ends included (0)");
-  add("--output", call->output, "FILE", "the result: .csv, .jsonl or .h5");
+  add("--output", call->output, "FILE", "the result: .csv, .jsonl, .h5, and .field with --field");
   add("--plot", call->run.destination.plot, "FILE", "slices of a grid as a .png, .svg or .pdf");
   atlas.add_flag("--field", call->field, "least actions of a grid from neighbour to neighbour");
   add("--check", call->check, "N", "points of a field that are searched once more (100)");

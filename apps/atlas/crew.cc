@@ -1,6 +1,5 @@
 #include "atlas/crew.h"
 
-#include <algorithm>
 #include <atomic>
 #include <future>
 #include <mutex>
@@ -11,10 +10,16 @@
 
 namespace carnot::apps {
 
+void CrewWork::drop_parts(Journal& journal) const {
+  for (long k = 0; k < chunks(); ++k) {
+    if (journal.holds(k) && journal.lines(k) != size_of(k)) journal.drop(k);
+  }
+}
+
 long CrewWork::done(const Journal& journal) const {
   long count = 0;
   for (long k = 0; k < chunks(); ++k) {
-    if (journal.holds(k)) count += std::min(chunk, problems - k * chunk);
+    if (journal.holds(k)) count += size_of(k);
   }
   return count;
 }
@@ -28,7 +33,7 @@ bool lead(Ranks& ranks, const CrewWork& work, Journal& journal, bool quiet) {
   const auto take = [&](long k, std::string_view text) {
     const std::lock_guard lock(mutex);
     journal.append(k, text);
-    known += std::min(work.chunk, work.problems - k * work.chunk);
+    known += work.size_of(k);
   };
   const auto left = static_cast<double>(std::max(1L, work.problems - resumed));
   ProgressBar bar("problems", left, quiet);

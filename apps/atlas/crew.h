@@ -1,6 +1,7 @@
 // Who solves the chunks of an atlas: this process, and the ranks beside it.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <string>
 
@@ -20,6 +21,9 @@ struct CrewWork {
       solve;
 
   [[nodiscard]] long chunks() const { return (problems + chunk - 1) / chunk; }
+  [[nodiscard]] long size_of(long k) const { return std::min(chunk, problems - k * chunk); }
+  // The last chunk of a list that has grown since is not whole: it is solved again.
+  void drop_parts(Journal& journal) const;
   // How many problems the journal has the answers of.
   [[nodiscard]] long done(const Journal& journal) const;
 };

@@ -110,11 +110,11 @@ std::string difference(const Json& there, const Json& here) {
 
 }  // namespace
 
-Journal::Journal(const std::string& path, const Json& identity, long chunks, bool resume)
+Journal::Journal(const std::string& path, const JournalCall& call, bool resume)
     : path_(path),
+      words_(call.words),
       file_(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)),
-      identity_(checksum_of(json_line(identity))),
-      places_(chunks) {
+      identity_(checksum_of(json_line(call.words))) {
   if (file_ < 0) fail("cannot open");
   try {
     if (flock(file_, LOCK_EX | LOCK_NB) != 0) {
@@ -129,8 +129,10 @@ Journal::Journal(const std::string& path, const Json& identity, long chunks, boo
              "an earlier run did not finish and left it",
              "--resume to go on, or the name of another file");
     }
-    scan(identity);
-    if (end_ == 0) write(kCallRecord, json_line(identity));
+    scan(call);
+    const Json now = call.now ? call.now(words_) : call.words;
+    if (end_ == 0 || now != words_) write(kCallRecord, json_line(now));
+    words_ = now;
   } catch (...) {
     close(file_);
     throw;
@@ -146,7 +148,7 @@ void Journal::fail(const std::string& what) const {
   throw std::runtime_error(fmt::format("{} '{}': {}", what, path_, std::strerror(errno)));
 }
 
-void Journal::scan(const Json& identity) {
+void Journal::scan(const JournalCall& call) {
   std::int64_t offset = 0;
   std::int64_t good = 0;  // where the last whole record ends
   while (offset < end_) {
@@ -160,20 +162,29 @@ void Journal::scan(const Json& identity) {
       continue;
     }
     const Head& head = found->head;
-    if (head.chunk == kCallRecord && head.identity != identity_) {
-      refuse_other(path_, difference(Json::parse(found->text), identity));
+    if (head.chunk == kCallRecord) {
+      words_ = Json::parse(found->text);
+      const Json then = call.then ? call.then(words_) : call.words;
+      if (then != words_) refuse_other(path_, difference(words_, then));
+      if (good == 0) identity_ = head.identity;
     }
-    const auto chunks = static_cast<std::int64_t>(places_.size());
-    if (head.identity != identity_ || head.chunk >= chunks) {
+    if (head.identity != identity_) {
       refuse_other(path_, "its first record is damaged, the others are of another one");
     }
     offset += static_cast<std::int64_t>(sizeof(Head));
-    if (head.chunk >= 0) places_[head.chunk] = {offset, head.length};
+    if (head.chunk >= 0) hold(head.chunk, offset, found->text);
     offset += head.length;
     good = offset;
   }
   if (good < end_ && ftruncate(file_, good) != 0) fail("cannot write");
   end_ = good;
+}
+
+void Journal::hold(std::int64_t chunk, std::int64_t offset, std::string_view text) {
+  if (chunk >= std::ssize(places_)) places_.resize(chunk + 1);
+  places_[chunk] = {offset,
+                    static_cast<std::int64_t>(text.size()),
+                    static_cast<long>(std::count(text.begin(), text.end(), '\n'))};
 }
 
 void Journal::write(std::int64_t chunk, std::string_view text) {
@@ -207,7 +218,7 @@ void Journal::append(long chunk, std::string_view text) {
   constexpr auto kInterval = std::chrono::seconds(1);
   const std::int64_t offset = end_ + static_cast<std::int64_t>(sizeof(Head));
   write(chunk, text);
-  places_[chunk] = {offset, static_cast<std::int64_t>(text.size())};
+  hold(chunk, offset, text);
   const auto now = std::chrono::steady_clock::now();
   if (now - synced_ < kInterval) return;
   if (fsync(file_) != 0) fail("cannot write");

@@ -167,7 +167,6 @@ void ProblemFile::read_header(const std::string& line, const ListOptions& option
 }
 
 void ProblemFile::read_lines() {
-  boost::crc_32_type sum;
   Lines lines(file_, 0);
   (void)lines.next();
   long number = 2;
@@ -180,10 +179,7 @@ void ProblemFile::read_lines() {
     has_free_ = has_free_ || apps::has_free(problem.ends);
     if (size_ % kStride == 0) places_.push_back({offset, number});
     ++size_;
-    sum.process_bytes(line->data(), line->size());
-    sum.process_byte('\n');
   }
-  checksum_ = sum.checksum();
   if (size_ == 0) refuse("--problems", path_, "it has no problems", "a line for each problem");
 }
 
@@ -244,13 +240,30 @@ AtlasProblem ProblemFile::at(long i) const {
   }
 }
 
-Json ProblemFile::identity() const {
+Json ProblemFile::identity_of_first(long count) const {
   Json columns = Json::array();
   for (const Column& column : columns_) columns.push_back(column.name);
-  return {{"file", {{"problems", size_}, {"columns", columns}, {"checksum", checksum_}}},
+  boost::crc_32_type sum;
+  Lines lines(file_, 0);
+  (void)lines.next();
+  for (long left = count; left > 0;) {
+    const std::optional<std::string> line = lines.next();
+    if (!line) throw std::runtime_error(fmt::format("'{}' has changed while it was read", path_));
+    if (is_blank(*line)) continue;
+    sum.process_bytes(line->data(), line->size());
+    sum.process_byte('\n');
+    --left;
+  }
+  return {{"file", {{"problems", count}, {"columns", columns}, {"checksum", sum.checksum()}}},
           {"from", end_json(given_.from, given_.free_from)},
           {"to", end_json(given_.to, given_.free_to)},
           {"time", given_.time}};
+}
+
+Json ProblemFile::identity_then(const Json& there) const {
+  const Json file = there.value("file", Json::object());
+  const Json size = file.value("problems", Json(nullptr));
+  return identity_of_first(size.is_number_integer() && size < size_ ? size.get<long>() : size_);
 }
 
 }  // namespace carnot::apps

@@ -22,7 +22,8 @@ class ProblemFile : public ProblemList {
 
   [[nodiscard]] long size() const override { return size_; }
   [[nodiscard]] AtlasProblem at(long i) const override;
-  [[nodiscard]] Json identity() const override;
+  [[nodiscard]] Json identity() const override { return identity_of_first(size_); }
+  [[nodiscard]] Json identity_then(const Json& there) const override;
   [[nodiscard]] bool has_free() const override { return has_free_; }
   [[nodiscard]] std::vector<std::string> parameters() const override { return set_; }
 
@@ -38,6 +39,8 @@ class ProblemFile : public ProblemList {
   void read_header(const std::string& line, const ListOptions& options);
   // Checks all lines and notes where they are.
   void read_lines();
+  // Throws std::runtime_error where the file has changed.
+  [[nodiscard]] Json identity_of_first(long count) const;
   [[nodiscard]] AtlasProblem parse(const std::string& line, const std::string& where) const;
 
   std::string path_;
@@ -49,7 +52,6 @@ class ProblemFile : public ProblemList {
   std::vector<std::string> set_;
   bool has_free_ = false;
   long size_ = 0;
-  std::uint32_t checksum_ = 0;
   struct Place {
     std::int64_t offset = 0;
     long line = 0;

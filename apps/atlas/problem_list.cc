@@ -170,6 +170,12 @@ class RandomList : public ProblemList {
     if (fixed_start_) json["from"] = end_json(ends_.from, ends_.free_from);
     return json;
   }
+  [[nodiscard]] Json identity_then(const Json& there) const override {
+    Json json = identity();
+    const Json size = there.value("random", Json(nullptr));
+    if (size.is_number_integer() && size < size_) json["random"] = size;
+    return json;
+  }
 
  private:
   Ends ends_;

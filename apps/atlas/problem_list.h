@@ -34,6 +34,9 @@ class ProblemList {
   [[nodiscard]] virtual AtlasProblem at(long i) const = 0;
   // What tells this list from others.
   [[nodiscard]] virtual Json identity() const = 0;
+  // What that was when the list was as long as `there`, an identity, says: lists may grow at their
+  // end. The same as identity() of those that do not grow, or that are shorter than that.
+  [[nodiscard]] virtual Json identity_then(const Json& /*there*/) const { return identity(); }
   // Of a grid, the first one slowest.
   [[nodiscard]] virtual std::vector<Axis> axes() const { return {}; }
   // Whether an end has a free coordinate.

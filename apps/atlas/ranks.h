@@ -37,7 +37,7 @@ class Ranks {
   // by its ranks.
   [[nodiscard]] int threads() const;
   // What rank 0 says, for all of them. Each must ask.
-  [[nodiscard]] bool agree(bool of_rank_0);
+  [[nodiscard]] long agree(long of_rank_0);
 
   // Rank 0, from one thread: serves the others until all have left. What the desk throws is thrown
   // then.

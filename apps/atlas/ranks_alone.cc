@@ -14,7 +14,7 @@ Ranks::~Ranks() = default;
 int Ranks::size() const { return 1; }
 bool Ranks::leads() const { return true; }
 int Ranks::threads() const { return thread_count(0); }
-bool Ranks::agree(bool of_rank_0) { return of_rank_0; }
+long Ranks::agree(long of_rank_0) { return of_rank_0; }
 void Ranks::serve(const Desk& /*desk*/) {}
 long Ranks::ask() { return -1; }
 void Ranks::hand_in(long /*chunk*/, std::string_view /*text*/) { assert(false); }

@@ -43,10 +43,9 @@ class Ranks::Implementation {
   [[nodiscard]] int size() const { return size_; }
   [[nodiscard]] int neighbours() const { return neighbours_; }
 
-  bool agree(bool of_rank_0) {
-    int said = of_rank_0 ? 1 : 0;
-    MPI_Bcast(&said, 1, MPI_INT, 0, MPI_COMM_WORLD);
-    return said != 0;
+  long agree(long of_rank_0) {
+    MPI_Bcast(&of_rank_0, 1, MPI_LONG, 0, MPI_COMM_WORLD);
+    return of_rank_0;
   }
 
   void serve(const Desk& desk) {
@@ -137,7 +136,7 @@ bool Ranks::leads() const { return !own_ || own_->rank() == 0; }
 int Ranks::threads() const {
   return std::max(1, thread_count(0) / (own_ ? own_->neighbours() : 1));
 }
-bool Ranks::agree(bool of_rank_0) { return own_ ? own_->agree(of_rank_0) : of_rank_0; }
+long Ranks::agree(long of_rank_0) { return own_ ? own_->agree(of_rank_0) : of_rank_0; }
 void Ranks::serve(const Desk& desk) {
   if (own_) own_->serve(desk);
 }

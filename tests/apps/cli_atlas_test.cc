@@ -1,4 +1,5 @@
 // carnot atlas: many problems, resumable.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
@@ -10,6 +11,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "carnot/shooting/distance_field.h"
 #include "command.h"
 
 namespace carnot::apps::cli_atlas_test {
@@ -167,6 +169,43 @@ TEST_F(AtlasTest, LeavesAJournalThatItTellsFromOthers) {
   expect_refused(with(call, {"--resume"}), HasSubstr("scene is"), sandbox);
 }
 
+// Lines that were added since an interruption are solved, too, as if they had always been there.
+TEST_F(AtlasTest, GoesOnWithAFileThatHasGrown) {
+  std::string text = "from_x,from_y,from_theta,to_x,to_y,to_theta\n";
+  const auto add = [&](int first, int last) {
+    for (int i = first; i < last; ++i) text += fmt::format("0,0,0,1,{},0.5\n", i % 7);
+    put("p.csv", text);
+  };
+  const auto call = [](const char* output, const Words& more) {
+    return with({"atlas",
+                 "unicycle",
+                 "--problems",
+                 "p.csv",
+                 "--starts",
+                 "2",
+                 "--no-times",
+                 "--quiet",
+                 "--output",
+                 output},
+                more);
+  };
+  add(0, 511);  // chunks of 1, and of 2 later
+  ASSERT_EQ(sandbox.run(call("a.jsonl", {}), stopped_after("0.3")).status, 130);
+  ASSERT_TRUE(std::filesystem::exists(sandbox.directory() / "a.jsonl.journal"));
+  const std::string before = text;
+  text.replace(text.find("1,3,0.5"), 7, "1,4,0.5");
+  put("p.csv", text);
+  expect_refused(call("a.jsonl", {"--resume"}), HasSubstr("problems.file.checksum is"), sandbox);
+  text = before;
+  add(511, 515);
+  const Outcome outcome = sandbox.run(call("a.jsonl", {"--resume", "--json"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.json()["problems"], 515);
+  EXPECT_GT(outcome.json()["resumed"], 0);
+  ASSERT_EQ(sandbox.run(call("whole.jsonl", {})).status, 0);
+  EXPECT_EQ(text_of("a.jsonl"), text_of("whole.jsonl"));
+}
+
 TEST_F(AtlasTest, StopsWhereFilesMayNotGrow) {
   const Words call = with(kRandom, {"--output", "a.jsonl"});
   ASSERT_EQ(sandbox.run(with(kRandom, {"--output", "whole.jsonl"})).status, 0);
@@ -233,7 +272,12 @@ TEST_F(AtlasTest, FieldsAgreeWithSearches) {
                    "--output"};
   const Outcome outcome = sandbox.run(with(grid, {"field.csv", "--field", "--check", "20"}));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(outcome.json()["field"]["lower"], 0);
+  const auto report = outcome.json()["field"];
+  EXPECT_EQ(report["checked"], 20);
+  EXPECT_EQ(report["lower"], 0);
+  EXPECT_EQ(report["triangles"], 20);
+  EXPECT_EQ(report["violations"], 0);
+  EXPECT_EQ(report["settled"], true);
   EXPECT_EQ(outcome.json()["solved"], 3 * 5 * 12);
   ASSERT_EQ(sandbox.run(with(grid, {"a.csv"})).status, 0);
   const std::vector<Words> field = cells_of(text_of("field.csv"));
@@ -244,6 +288,32 @@ TEST_F(AtlasTest, FieldsAgreeWithSearches) {
     const double action = std::stod(searched[i][9]);
     EXPECT_NEAR(std::stod(field[i][9]), action, 1e-8 * action) << i;
   }
+}
+
+TEST_F(AtlasTest, WritesDistancesForPlanners) {
+  const Outcome outcome = sandbox.run({"atlas",
+                                       "unicycle",
+                                       "--from",
+                                       "0,0,0",
+                                       "--time",
+                                       "2",
+                                       "--grid",
+                                       "x=0:1:3, y=-1:1:5, theta=-pi:pi:12",
+                                       "--mod-angles",
+                                       "--field",
+                                       "--check",
+                                       "0",
+                                       "--output",
+                                       "left.field"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(sandbox.files(), ElementsAre("left.field"));
+  const auto field = DistanceField::read((sandbox.directory() / "left.field").string());
+  EXPECT_EQ(field.scene(), "unicycle");
+  // A quarter of the unit circle leads there, and whole turns do not count.
+  const double pi = std::numbers::pi;
+  const double bound = field.lower_bound(std::vector<double>{1, 1, 5 * pi / 2});
+  EXPECT_LE(bound, std::sqrt(2) * pi / 2);
+  EXPECT_GE(bound, 1);
 }
 
 // Slices of a field, in three of which two geodesics are equally short somewhere.
@@ -301,6 +371,22 @@ TEST_F(AtlasTest, RefusesBadInput) {
   refused({"--random", "3", "--plot", "a.png"}, "two axes");
   refused({"--from", "0,0,0", "--to", "0,0,0", "--grid", "x=0:1:2", "--field", "--count", "2"},
           "one geodesic");
+  expect_refused({"atlas", "unicycle", "--random", "3", "--output", "a.field"},
+                 HasSubstr("unknown ending"),
+                 sandbox);
+  expect_refused({"atlas",
+                  "unicycle",
+                  "--from",
+                  "0,0,0",
+                  "--to",
+                  "0,0,0",
+                  "--grid",
+                  "x=0:1:3",
+                  "--field",
+                  "--output",
+                  "a.field"},
+                 HasSubstr("the whole space"),
+                 sandbox);
   expect_refused({"atlas", "unicycle", "--random", "3"}, HasSubstr("--output"), sandbox);
   expect_refused({"atlas", "unicycle", "--random", "3", "--output", "a.txt"},
                  HasSubstr("unknown ending"),

@@ -17,9 +17,9 @@ using namespace carnot::apps;
 using Clock = std::chrono::steady_clock;
 
 void lead(Ranks& ranks, const char* path, long chunks, double seconds) {
-  Journal journal(path, {{"model", "sleep"}}, chunks, false);
+  Journal journal(path, {{{"model", "sleep"}}, {}, {}}, false);
   ChunkList list(journal, chunks);
-  (void)ranks.agree(true);
+  (void)ranks.agree(1);
   const auto began = Clock::now();
   std::chrono::duration<double> busy{0};
   ranks.serve({[&] { return list.next(); },
@@ -42,7 +42,7 @@ void lead(Ranks& ranks, const char* path, long chunks, double seconds) {
 }
 
 void follow(Ranks& ranks, double seconds, std::size_t bytes) {
-  (void)ranks.agree(false);
+  (void)ranks.agree(0);
   const std::string record(bytes, 'x');
   for (long chunk = ranks.ask(); chunk >= 0; chunk = ranks.ask()) {
     std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
