@@ -51,7 +51,8 @@ struct Field {
   long flows = 0;     // tangent flows
   long sweeps = 0;    // of the longest spread
   // Three figures tell how far the field can be trusted. Points to which a neighbour promised less,
-  // by more than 1e-6 of it, where Newton's method found nothing and a search nothing better;
+  // by more than 1e-6 of it, where Newton's method found nothing: all of them or the last sample of
+  // them were searched in vain;
   long unkept = 0;
   long triangles = 0;   // pairs of neighbours with a path between them that was searched,
   long violations = 0;  // and points that are farther by more than 1e-8 than by way of the other;

@@ -12,10 +12,11 @@ namespace carnot::internal {
 namespace {
 
 constexpr double kBetter = 1e-10;  // relative; less is round-off
-// Errors below this are gone after one step of Newton's method more, since that squares them;
-// verification measures what is left.
-constexpr double kSquared = 1e-6;
 
+// Whether an extremal was found without a conjugate time on the way.
+bool leads_on(const FieldPoint& from, const FieldAttempt& attempt) {
+  return attempt.found && attempt.point.sign == from.sign;
+}
 }  // namespace
 
 FieldCounts& FieldCounts::operator+=(const FieldCounts& other) {
@@ -29,6 +30,7 @@ FieldCounts& FieldCounts::operator+=(const FieldCounts& other) {
 FieldSweep::FieldSweep(const BoundaryValueProblem& problem, const FieldGrid& grid)
     : problem_(problem),
       grid_(grid),
+      newton_(problem),
       n_(problem.dynamics.dof),
       layers_(static_cast<long>(grid.axes.front().values.size())),
       points_(grid.size(), n_, grid.axes.size()) {
@@ -43,101 +45,6 @@ std::vector<double> FieldSweep::target(long i, const std::vector<int>& windings)
   return q;
 }
 
-long FieldSweep::steps_for(const SmallVector& p0) const {
-  // Lengths of steps in radians. Fields of 133,956 unicycles and of 68,921 points of the Heisenberg
-  // group took 18.5 and 8.8 s with 1, and 19.8 and 7.6 s with 1.5.
-  constexpr double kStep = 1;
-  constexpr long kLeast = 4;
-  constexpr long kMost = 1024;
-  std::vector<double> velocity(n_), lambda(problem_.dynamics.multipliers);
-  const std::span<const double> p(p0.data(), static_cast<std::size_t>(n_));
-  const double energy =
-      problem_.dynamics.evaluate(0, problem_.from, p, velocity, lambda).hamiltonian;
-  // Momenta of coordinates without mass turn the others.
-  const double length =
-      problem_.time * std::max(std::sqrt(2 * std::max(energy, 0.0)), p0.cwiseAbs().maxCoeff());
-  return std::clamp(static_cast<long>(std::ceil(length / kStep)), kLeast, kMost);
-}
-
-void FieldSweep::approach(const SmallMatrix& inverse,
-                          const std::vector<double>& target,
-                          SmallVector& p0) const {
-  constexpr int kMost = 4;
-  constexpr double kFalls = 0.3;  // of the error in a step; else a Jacobian of its own pays
-  std::vector<double> z(2 * problem_.from.size());
-  SmallVector miss(n_);
-  double last = std::numeric_limits<double>::infinity();
-  SmallVector best = p0;
-  for (int step = 0; step < kMost; ++step) {
-    std::copy(problem_.from.begin(), problem_.from.end(), z.begin());
-    std::copy_n(p0.data(), n_, z.begin() + n_);
-    const StepPlan plan = StepPlan::equal(0, problem_.time, steps_for(p0));
-    if (!problem_.dynamics.flow(plan, z).completed()) break;
-    for (int r = 0; r < n_; ++r) miss[r] = z[r] - target[r];
-    const double error = miss.cwiseAbs().maxCoeff();
-    if (!(error < last)) break;
-    best = p0;
-    if (error <= kSquared || error > kFalls * last) break;
-    last = error;
-    const SmallVector correction = inverse * miss;
-    if (!(correction.cwiseAbs().maxCoeff() < p0.cwiseAbs().maxCoeff())) break;
-    p0 -= correction;
-  }
-  p0 = best;
-}
-
-bool FieldSweep::solve(const std::vector<double>& target,
-                       FieldPoint& point,
-                       FieldCounts& counts,
-                       int factor) const {
-  constexpr int kMost = 7;
-  constexpr double kFalls = 0.5;
-  const auto n = static_cast<std::size_t>(n_);
-  std::vector<double> z(2 * n), m(4 * n * n);
-  double last = std::numeric_limits<double>::infinity();
-  const long steps = factor * steps_for(point.p0);
-  SmallMatrix j(n_, n_), k(n_, n_);
-  SmallVector miss(n_);
-  for (int iteration = 0; iteration < kMost; ++iteration) {
-    std::copy(problem_.from.begin(), problem_.from.end(), z.begin());
-    std::copy_n(point.p0.data(), n, z.begin() + n_);
-    ++counts.flows;
-    if (!problem_.dynamics.tangent_flow(StepPlan::equal(0, problem_.time, steps), z, m)
-             .completed()) {
-      return false;
-    }
-    for (int r = 0; r < n_; ++r) {
-      miss[r] = z[r] - target[r];
-      for (int c = 0; c < n_; ++c) {
-        j(r, c) = m[r * 2 * n_ + n_ + c];
-        k(r, c) = m[(n_ + r) * 2 * n_ + n_ + c];
-      }
-    }
-    const double error = miss.cwiseAbs().maxCoeff();
-    if (!(error < last) && !(error <= kSquared)) return false;
-    const SmallMatrix inverse = small_lu_inverse(j);
-    if (!inverse.allFinite()) return false;
-    point.p0 -= inverse * miss;
-    if (error <= kSquared) {
-      const Determinant determinant = determinant_of(j);
-      point.sign = static_cast<std::int8_t>(determinant.sign);
-      point.inverse = inverse;
-      point.slope = k * inverse;
-      point.p1.resize(n_);
-      const SmallVector moved = k * (inverse * miss);
-      for (int r = 0; r < n_; ++r) point.p1[r] = z[n_ + r] - moved[r];
-      break;
-    }
-    if (iteration + 1 == kMost || (iteration > 1 && error > kFalls * last)) return false;
-    last = error;
-  }
-  std::vector<double> velocity(n), lambda(problem_.dynamics.multipliers);
-  const std::span<const double> p(point.p0.data(), n);
-  point.action =
-      problem_.time * problem_.dynamics.evaluate(0, problem_.from, p, velocity, lambda).hamiltonian;
-  return std::isfinite(point.action);
-}
-
 bool FieldSweep::seed(long i,
                       const std::vector<double>& p0,
                       const std::vector<int>& windings,
@@ -146,7 +53,7 @@ bool FieldSweep::seed(long i,
   point.p0 = Eigen::Map<const Eigen::VectorXd>(p0.data(), n_);
   point.windings = windings;
   point.origin = origin;
-  if (!solve(target(i, windings), point, counts_)) return false;
+  if (!newton_.solve(target(i, windings), point, counts_.flows)) return false;
   if (points_.known(i) && !(point.action < (1 - kBetter) * points_.action(i))) return false;
   points_.put(i, point);
   return true;
@@ -168,66 +75,103 @@ double FieldSweep::promised(const FieldPoint& from, const SmallVector& dq) const
   return from.action + from.p1.dot(dq) + 0.5 * dq.dot(from.slope * dq);
 }
 
-bool FieldSweep::reach(const FieldPoint& from,
-                       const std::vector<double>& target,
-                       const SmallVector& dq,
-                       FieldPoint& point,
-                       FieldCounts& counts) const {
-  // Where J is nearly singular the step leads anywhere.
-  constexpr double kFar = 4;  // of the momentum
-  const SmallVector step = from.inverse * dq;
-  if (!(step.cwiseAbs().maxCoeff() < kFar * from.p0.cwiseAbs().maxCoeff())) return false;
-  point.p0 = from.p0 + step;
-  approach(from.inverse, target, point.p0);
-  return solve(target, point, counts) && point.sign == from.sign;
+bool FieldSweep::tempts(const FieldPoint& from, const Push& push) const {
+  constexpr double kSameWay = 0.1;  // of the largest momentum
+  const Neighbour& to = push.to;
+  if (!points_.known(to.index)) return true;
+  if (!(push.promise < (1 - kBetter) * points_.action(to.index))) return false;
+  // What differs then is the error of the model, not the way.
+  const SmallVector there = points_.p0(to.index);
+  const SmallVector apart = from.p0 + from.inverse * to.dq - there;
+  const bool near = apart.cwiseAbs().maxCoeff() < kSameWay * there.cwiseAbs().maxCoeff();
+  return !near || to.windings != points_.windings(to.index);
 }
 
-void FieldSweep::push(const FieldPoint& from, const Neighbour& to, FieldCounts& counts) {
-  constexpr double kDoubt = 1e-6;   // relative; the model of a neighbour is not better than that
-  constexpr double kSameWay = 0.1;  // of the largest momentum
-  const double promise = promised(from, to.dq);
-  const bool known = points_.known(to.index);
-  const double action = points_.action(to.index);
-  if (known) {
-    if (!(promise < (1 - kBetter) * action)) return;
-    // What differs then is the error of the model, not the way.
-    const SmallVector there = points_.p0(to.index);
-    const SmallVector apart = from.p0 + from.inverse * to.dq - there;
-    const bool near = apart.cwiseAbs().maxCoeff() < kSameWay * there.cwiseAbs().maxCoeff();
-    if (near && to.windings == points_.windings(to.index)) return;
+FieldAttempt FieldSweep::attempt(const FieldPoint& from,
+                                 std::vector<double> target,
+                                 const SmallVector& dq) const {
+  // Where J is nearly singular the step leads anywhere.
+  constexpr double kFar = 4;  // of the momentum
+  FieldAttempt attempt;
+  attempt.target = std::move(target);
+  attempt.inverse = from.inverse;
+  const SmallVector step = from.inverse * dq;
+  if (step.cwiseAbs().maxCoeff() < kFar * from.p0.cwiseAbs().maxCoeff()) {
+    attempt.point.p0 = from.p0 + step;
   }
-  ++counts.pushes;
-  FieldPoint point;
-  point.windings = to.windings;
-  point.origin = from.origin;
-  const std::vector<double> end = target(to.index, to.windings);
-  bool reached = reach(from, end, to.dq, point, counts);
-  if (!reached) {
-    // By way of the point half-way.
-    FieldPoint half;
-    std::vector<double> middle = end;
-    for (int j = 0; j < n_; ++j) middle[j] -= 0.5 * to.dq[j];
-    const SmallVector step = 0.5 * to.dq;
-    reached = reach(from, middle, step, half, counts) && reach(half, end, step, point, counts);
+  return attempt;
+}
+
+bool FieldSweep::reach_by_half(const FieldPoint& from,
+                               const Neighbour& to,
+                               FieldPoint& point,
+                               FieldCounts& counts) const {
+  std::vector<double> end = target(to.index, to.windings);
+  std::vector<double> middle = end;
+  for (int j = 0; j < n_; ++j) middle[j] -= 0.5 * to.dq[j];
+  const SmallVector step = 0.5 * to.dq;
+  point = from;
+  for (const std::vector<double>* next : {&middle, &end}) {
+    FieldAttempt one = attempt(point, *next, step);
+    if (one.point.p0.size() == 0) return false;
+    newton_.solve({&one, 1}, counts.flows);
+    if (!leads_on(from, one)) return false;
+    point = one.point;
   }
-  if (!reached) {
-    if (promise < (1 - kDoubt) * action) points_.doubt(to.index);
+  return true;
+}
+
+void FieldSweep::push(const FieldPoint& from,
+                      const std::vector<Neighbour>& neighbours,
+                      FieldCounts& counts) {
+  std::vector<Push> near, far;
+  std::vector<FieldAttempt> attempts;
+  for (const Neighbour& to : neighbours) {
+    const Push push{to, promised(from, to.dq)};
+    if (!tempts(from, push)) continue;
+    ++counts.pushes;
+    FieldAttempt one = attempt(from, target(to.index, to.windings), to.dq);
+    if (one.point.p0.size() == 0) {
+      far.push_back(push);
+    } else {
+      near.push_back(push);
+      attempts.push_back(std::move(one));
+    }
+  }
+  newton_.solve(attempts, counts.flows);
+  for (std::size_t i = 0; i < near.size(); ++i) take(from, near[i], attempts[i], counts);
+  for (const Push& push : far) take(from, push, {}, counts);
+}
+
+void FieldSweep::take(const FieldPoint& from,
+                      const Push& push,
+                      const FieldAttempt& attempt,
+                      FieldCounts& counts) {
+  constexpr double kDoubt = 1e-6;  // relative; the model of a neighbour is not better than that
+  const long i = push.to.index;
+  FieldPoint point = attempt.point;
+  if (!leads_on(from, attempt) && !reach_by_half(from, push.to, point, counts)) {
+    if (push.promise < (1 - kDoubt) * points_.action(i)) points_.doubt(i);
     return;
   }
-  if (known && !(point.action < (1 - kBetter) * action)) return;
+  if (points_.known(i) && !(point.action < (1 - kBetter) * points_.action(i))) return;
   ++counts.improved;
-  points_.put(to.index, point);
+  point.windings = push.to.windings;
+  point.origin = from.origin;
+  points_.put(i, point);
 }
 
 void FieldSweep::push_all(long i, long first, long last, FieldCounts& counts) {
   if (!points_.has_news(i, 0)) return;
   const FieldPoint from = points_.point(i);
+  std::vector<Neighbour> neighbours;
   for (std::size_t axis = 0; axis < grid_.axes.size(); ++axis) {
     for (const int direction : {-1, 1}) {
-      const Neighbour to = neighbour(i, from, axis, direction);
-      if (to.index >= first && to.index < last) push(from, to, counts);
+      Neighbour to = neighbour(i, from, axis, direction);
+      if (to.index >= first && to.index < last) neighbours.push_back(std::move(to));
     }
   }
+  push(from, neighbours, counts);
 }
 
 void FieldSweep::sweep_slab(long first,
@@ -251,7 +195,7 @@ void FieldSweep::cross(long layer, FieldCounts& counts) {
       if (!points_.has_news(k, direction > 0 ? 1 : 2)) continue;
       const FieldPoint point = points_.point(k);
       const Neighbour to = neighbour(k, point, 0, direction);
-      if (to.index >= 0) push(point, to, counts);
+      if (to.index >= 0) push(point, {to}, counts);
     }
   }
 }
@@ -302,23 +246,21 @@ std::vector<long> FieldSweep::doubtful() const {
 
 double FieldSweep::error_of(long i, const std::vector<double>& units, int factor) const {
   const FieldPoint point = points_.point(i);
-  std::vector<double> z = problem_.from;
-  z.insert(z.end(), point.p0.data(), point.p0.data() + n_);
-  const StepPlan plan = StepPlan::equal(0, problem_.time, 2 * factor * steps_for(point.p0));
-  if (!problem_.dynamics.flow(plan, z).completed()) return std::numeric_limits<double>::infinity();
+  const std::vector<double> end = newton_.end(point.p0, 2 * factor);
+  if (end.empty()) return std::numeric_limits<double>::infinity();
   const std::vector<double> to = target(i, point.windings);
   double error = 0;
-  for (int j = 0; j < n_; ++j) error = std::max(error, units[j] * std::abs(z[j] - to[j]));
+  for (int j = 0; j < n_; ++j) error = std::max(error, units[j] * std::abs(end[j] - to[j]));
   return error;
 }
 
 double FieldSweep::verify(long i, const std::vector<double>& units, double allowed) {
   constexpr int kMostSteps = 16;  // times those of the sweep
   double error = error_of(i, units, 1);
-  FieldCounts unused;
+  long unused = 0;
   for (int factor = 2; factor <= kMostSteps && !(error <= allowed); factor *= 2) {
     FieldPoint point = points_.point(i);
-    if (!solve(target(i, point.windings), point, unused, factor)) continue;
+    if (!newton_.solve(target(i, point.windings), point, unused, factor)) continue;
     if (point.sign != points_.sign(i)) break;
     points_.replace(i, point);
     error = error_of(i, units, factor);

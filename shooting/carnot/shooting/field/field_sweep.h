@@ -7,8 +7,9 @@
 //   p(0) + J^-1 dq     and     A + p(T).dq + dq'S dq / 2.
 //
 // Where that is less than the neighbour has, Newton's method on the end point makes an extremal of
-// it. Its J must have a determinant of the same sign: a change means that a conjugate time has
-// passed T on the way. Sweeps over all points, forward and back, go on until nothing changes.
+// it (field_newton.h), for several neighbours at once. Its J must have a determinant of the same
+// sign: a change means that a conjugate time has passed T on the way. Sweeps over all points,
+// forward and back, go on until nothing changes.
 //
 // The grid is cut into slabs across its first axis, which do not depend on the number of threads:
 // each is swept by one thread, then borders of every second pair, then the others. So the result
@@ -20,6 +21,7 @@
 
 #include "carnot/shooting/boundary_value_problem.h"
 #include "carnot/shooting/field/field_grid.h"
+#include "carnot/shooting/field/field_newton.h"
 #include "carnot/shooting/field/field_store.h"
 
 namespace carnot::internal {
@@ -74,28 +76,30 @@ class FieldSweep {
                                     std::size_t axis,
                                     int direction) const;
   [[nodiscard]] double promised(const FieldPoint& from, const SmallVector& dq) const;
-  // Steps of the method that are enough for most momenta of this size.
-  [[nodiscard]] long steps_for(const SmallVector& p0) const;
-  // Takes p0 nearer to `target` by flows alone, with the inverse Jacobian of a neighbour.
-  void approach(const SmallMatrix& inverse,
-                const std::vector<double>& target,
-                SmallVector& p0) const;
-  // An extremal to `target` by Newton's method from p0, with so many times these steps. False where
-  // there is none.
-  bool solve(const std::vector<double>& target,
-             FieldPoint& point,
-             FieldCounts& counts,
-             int factor = 1) const;
   [[nodiscard]] double error_of(long i, const std::vector<double>& units, int factor) const;
-  // The extremal at `target`, dq beside that of `from`. False where there is none without a
-  // conjugate time on the way.
-  bool reach(const FieldPoint& from,
-             const std::vector<double>& target,
-             const SmallVector& dq,
-             FieldPoint& point,
-             FieldCounts& counts) const;
-  // Tells a neighbour what `from`, point i, promises it.
-  void push(const FieldPoint& from, const Neighbour& to, FieldCounts& counts);
+  // A neighbour that was promised less, and how much.
+  struct Push {
+    Neighbour to;
+    double promise = 0;
+  };
+  // Whether what `from` promises is worth trying.
+  [[nodiscard]] bool tempts(const FieldPoint& from, const Push& push) const;
+  // From `from` to a target at dq beside its own; p0 is empty where that is too far to try.
+  [[nodiscard]] FieldAttempt attempt(const FieldPoint& from,
+                                     std::vector<double> target,
+                                     const SmallVector& dq) const;
+  // By way of the point half-way.
+  [[nodiscard]] bool reach_by_half(const FieldPoint& from,
+                                   const Neighbour& to,
+                                   FieldPoint& point,
+                                   FieldCounts& counts) const;
+  // What came of a push that was attempted directly, which may have failed.
+  void take(const FieldPoint& from,
+            const Push& push,
+            const FieldAttempt& attempt,
+            FieldCounts& counts);
+  // Tells these neighbours what `from` promises them.
+  void push(const FieldPoint& from, const std::vector<Neighbour>& neighbours, FieldCounts& counts);
   void push_all(long i, long first, long last, FieldCounts& counts);
   // One sweep over the layers first to last, forward or back. It ends early where `goes_on` says
   // so, which is asked before every layer.
@@ -108,6 +112,7 @@ class FieldSweep {
 
   const BoundaryValueProblem& problem_;
   const FieldGrid& grid_;
+  FieldNewton newton_;
   int n_;
   long layer_;  // points of a layer across the first axis
   long layers_;

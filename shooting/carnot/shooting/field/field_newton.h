@@ -1,0 +1,55 @@
+// Extremals to given ends by Newton's method, from momenta that are nearly right.
+//
+// Several are solved side by side where the scene has packs (packed_tangents.h): coarse tangents
+// bring an end within 1e-3, and exact flows with the last inverse Jacobian take it to round-off.
+// Where that fails, and without packs, tangent flows do it, one by one.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "carnot/shooting/boundary_value_problem.h"
+#include "carnot/shooting/field/field_store.h"
+
+namespace carnot::internal {
+
+// An extremal that is looked for.
+struct FieldAttempt {
+  std::vector<double> target;
+  SmallMatrix inverse;  // of a neighbour's Jacobian
+  FieldPoint point;     // p0 where it begins; then all but its windings and origin, where found
+  bool found = false;
+};
+
+class FieldNewton {
+ public:
+  // Keeps a reference.
+  explicit FieldNewton(const BoundaryValueProblem& problem);
+
+  // All of them; `flows` counts tangent flows, one for each extremal of a pack.
+  void solve(std::span<FieldAttempt> attempts, long& flows) const;
+  // One by tangent flows, with so many times the usual steps. False where there is none.
+  bool solve(const std::vector<double>& target,
+             FieldPoint& point,
+             long& flows,
+             int factor = 1) const;
+  // q(T) of a flow of so many times the usual steps; empty where it fails.
+  [[nodiscard]] std::vector<double> end(const SmallVector& p0, int factor) const;
+
+ private:
+  // Steps of the method that are enough for most momenta of this size.
+  [[nodiscard]] long steps_for(const SmallVector& p0) const;
+  // Flows from p0; z is the end. False where that fails.
+  bool flow(const SmallVector& p0, int factor, std::vector<double>& z) const;
+  void solve_packed(std::span<FieldAttempt> attempts, long& flows) const;
+  // Takes point.p0 to round-off with point.inverse, which is that of an end within `near`.
+  bool polish(const std::vector<double>& target, double near, FieldPoint& point) const;
+  // Takes p0 nearer to `target` by flows alone, with the inverse Jacobian of a neighbour.
+  void approach(const FieldAttempt& attempt, SmallVector& p0) const;
+  bool set_action(FieldPoint& point) const;
+
+  const BoundaryValueProblem& problem_;
+  int n_;
+};
+
+}  // namespace carnot::internal
