@@ -9,6 +9,7 @@
 #include "carnot/shooting/find_geodesics.h"
 #include "carnot/shooting/path/discrete_newton.h"
 #include "carnot/shooting/search/starts.h"
+#include "catalogue/scene_choice.h"
 #include "shooting/problems.h"
 
 namespace carnot::internal::singular_coordinates_test {
@@ -52,6 +53,20 @@ TEST(SingularCoordinates, AnAnswerSaysWhereTheyStoodInTheWayOfOthers) {
   EXPECT_THAT(report.message, HasSubstr("ran into a singularity of the coordinates"));
   EXPECT_EQ(report.reason, Reason::kNone);
   EXPECT_EQ(find_geodesics(test::sideways()).message, "");
+}
+
+// The least action of a longer bicycle turns in a thirtieth of the time, just before the wheel is
+// across: 32 intervals step over the end of the coordinates, and lead to a path of action 26.8 only
+// that is no minimum. Its limit along the length of the bicycle, from 1 on, has this action.
+TEST(SingularCoordinates, PathsThatTurnBesideThemAreFoundOnFinerGrids) {
+  constexpr double kKnown = 20.4865269910;
+  const Dynamics bicycle = apps::find_scene("bicycle").make({{"length", 2}}, "gauss16");
+  const BoundaryValueProblem problem(bicycle, {0, 0, 0, 0}, {0, 1, 0, 0});
+  GeodesicOptions options;
+  options.samples = 0;
+  const Geodesic least = find_geodesics(problem, options).geodesics.at(0);
+  EXPECT_NEAR(least.action, kKnown, 1e-9);
+  EXPECT_EQ(least.label, Label::kLocallyMinimal);
 }
 
 TEST(SingularCoordinates, EndsThatTheyPartAreToldOnFailure) {

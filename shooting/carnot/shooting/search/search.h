@@ -69,6 +69,12 @@ class Search {
   // Whether momenta take turns with starts of drift: while these found nothing.
   [[nodiscard]] bool turn_of_momenta() const;
   void relax_round(int count);
+  // The grid of the next round. A path that turns within an interval steps over the end of the
+  // chart beside it. So where most starts are blocked there, and what was found is nothing or no
+  // minimum, two finer grids take turns. Measured: the least action of a bicycle of length 2 to (0,
+  // 1, 0, 0) turns within 0.03 of the time, 0.04 rad before the end; of 882 starts on 32 intervals
+  // none finds it, on 64 and on 128 some do.
+  [[nodiscard]] int intervals_beside_chart_end() const;
   // The same where the scene has no transcription of its own.
   void drift_round(int count);
   // The same from momenta, where forces keep the path on a manifold.

@@ -50,8 +50,16 @@ std::optional<LeastRelaxed> least_of(const BoundaryValueProblem& problem,
 
 }  // namespace
 
+int Search::intervals_beside_chart_end() const {
+  constexpr int kTurn = 8;  // starts
+  const bool mostly_blocked = 2 * tally_.blocked > tally_.starts;
+  if (!mostly_blocked || !(extremals_.empty() || descends_)) return intervals_;
+  const int halvings = 1 + tally_.drawn / kTurn % 2;
+  return std::max(intervals_, std::min(intervals_ << halvings, kMaxIntervals));
+}
+
 void Search::relax_round(int count) {
-  const RelaxedStartOptions options{options_.seed, intervals_, stiffness_};
+  const RelaxedStartOptions options{options_.seed, intervals_beside_chart_end(), stiffness_};
   std::vector<RelaxedStart> starts(count);
   parallel_for(count, threads_, [&](int i) {
     if (deadline_.passed()) return;
