@@ -13,6 +13,8 @@
 #include "carnot/shooting/find_geodesics.h"
 #include "carnot/shooting/problem/natural_scales.h"
 #include "carnot/shooting/problem/rescaled.h"
+#include "carnot/shooting/steering_function.h"
+#include "carnot/shooting/warm_start.h"
 #include "shooting/problems.h"
 
 namespace carnot::internal::invariance_test {
@@ -222,6 +224,64 @@ TEST(Invariances, OfUnitsInContinuation) {
     EXPECT_NEAR(report.folds[0].action / unit, known.folds[0].action, 1e-8);
     EXPECT_NEAR(
         report.points.back().geodesic.action / unit, known.points.back().geodesic.action, 1e-8);
+  }
+}
+
+// A warm start takes the same flows to the same answers.
+TEST(Invariances, OfUnitsInWarmStarts) {
+  const Subject subject = subjects()[0];
+  const std::vector<double> zero{0, 0, 0, 0};
+  GeodesicOptions options;
+  options.samples = 0;
+  const BoundaryValueProblem own = problem_in(subject, zero, {0, 1, 0, 0}, {});
+  const std::vector<double> parking = find_geodesics(own, options).geodesics.at(0).p0;
+  struct Answer {
+    WarmStartReport report;
+    std::vector<double> p0;  // in units of one
+  };
+  const auto in = [&](const Units& units) {
+    const BoundaryValueProblem problem = problem_in(subject, zero, {0, 1, 0, 0}, units);
+    const std::vector<double> to = problem_in(subject, zero, {0.003, 1.01, 0.002, 0}, units).to;
+    std::vector<double> unit, p0 = parking;
+    for (const double power : subject.powers) {
+      unit.push_back(action_unit(subject, units) / std::pow(units.length, power));
+    }
+    for (int j = 0; j < 4; ++j) p0[j] *= unit[j];
+    const WarmStart start(problem, p0);
+    EXPECT_TRUE(start.ready()) << units.length;
+    Answer answer{start.solve(to.data(), p0.data()), p0};
+    for (int j = 0; j < 4; ++j) answer.p0[j] /= unit[j];
+    return answer;
+  };
+  const Answer known = in({});
+  ASSERT_TRUE(known.report.converged);
+  for (const Units units : {Units{1e-6, 1, 1}, Units{1e6, 1, 1}, Units{1e-3, 1e-5, 1e4}}) {
+    const Answer answer = in(units);
+    EXPECT_TRUE(answer.report.converged) << units.length << ' ' << answer.report.endpoint_error;
+    EXPECT_LE(answer.report.flows, known.report.flows + 1);
+    // |dq(T)/dp0|^-1 is about 100, and each is within the tolerance of 1e-10.
+    for (int j = 0; j < 4; ++j) EXPECT_NEAR(answer.p0[j], known.p0[j], 4e-8);
+  }
+}
+
+// What is too near to be searched is told by the length of the scene: in small units, too, a target
+// half of it away is not.
+TEST(Invariances, OfUnitsInSteering) {
+  constexpr double kSame = 1e-9;
+  const TextScene unicycle = scene_from_text(
+      "coordinates x, y [length], theta [angle]\nparameters L = 1 > 0\n"
+      "kinetic = (x'^2 + y'^2 + L^2 theta'^2) / 2\n0 = x' sin(theta) - y' cos(theta)\n");
+  const auto sideways = [&](double away, double length) {
+    const SteeringFunction steer(make_dynamics(unicycle.with({{"L", length}})));
+    const std::vector<double> from{0, 0, 0};
+    const std::vector<double> to{0, away * length, 0};
+    return steer.distance(from, to) / length;
+  };
+  for (const double away : {1e-10, 1e-4, 0.5}) {
+    const double known = sideways(away, 1);
+    for (const double length : {1e-12, 1e6}) {
+      EXPECT_NEAR(sideways(away, length), known, kSame * known) << away << ' ' << length;
+    }
   }
 }
 

@@ -7,6 +7,8 @@
 #include <stdexcept>
 
 #include "carnot/shooting/problem/ends.h"
+#include "carnot/shooting/problem/natural_scales.h"
+#include "carnot/shooting/problem/rescaled.h"
 #include "carnot/shooting/shoot/end_point.h"
 #include "carnot/shooting/steer/end_point_model.h"
 
@@ -18,13 +20,28 @@ namespace {
 
 constexpr long kSteps = 64;  // of the tangent flow, and where there is no choice of steps
 
-// The steps that reach the tolerance along the extremal from z.
-StepPlan plan_for(const BoundaryValueProblem& problem, std::vector<double> z, double tolerance) {
-  if (problem.dynamics.has_automatic_flow()) {
-    const AutomaticFlow flow = problem.dynamics.automatic_flow(0, problem.time, tolerance, z);
+// The steps that reach the tolerance along the extremal from z, all in the scales. The scene
+// chooses them in its own units, where the least of the scales is what an error may be multiplied
+// by.
+StepPlan plan_for(const BoundaryValueProblem& own,
+                  const NaturalScales& scales,
+                  std::vector<double> z,
+                  double tolerance) {
+  const int n = own.dynamics.dof;
+  double least = 1;
+  for (int j = 0; j < n; ++j) {
+    z[j] *= scales.q[j];
+    z[n + j] *= scales.momentum(j);
+    least = std::min({least, scales.q[j], scales.momentum(j)});
+  }
+  if (own.dynamics.has_automatic_flow()) {
+    AutomaticFlow flow = own.dynamics.automatic_flow(0, own.time, least * tolerance, z);
+    for (double* t : {&flow.plan.start, &flow.plan.end, &flow.plan.step, &flow.plan.last}) {
+      *t /= scales.time;
+    }
     if (flow.reached) return flow.plan;
   }
-  return StepPlan::equal(0, problem.time, kSteps);
+  return StepPlan::equal(0, own.time / scales.time, kSteps);
 }
 
 // Broyden's update of an inverse Jacobian, such that inverse * change = step.
@@ -37,10 +54,8 @@ void update(const Vector& step, const Vector& change, Matrix& inverse) {
   inverse += ((step - image) / weight).lazyProduct(row.transpose());
 }
 
-// p0, if the arguments of the constructor are what it asks for.
-EndPointModel::Vector checked(const BoundaryValueProblem& problem,
-                              const std::vector<double>& p0,
-                              double tolerance) {
+// Throws unless the arguments of the constructor are what it asks for.
+void check(const BoundaryValueProblem& problem, const std::vector<double>& p0, double tolerance) {
   constexpr int kMost = EndPointModel::kMostDof;
   problem.validate();
   if (!problem.limits.empty()) {
@@ -56,7 +71,15 @@ EndPointModel::Vector checked(const BoundaryValueProblem& problem,
   if (!(tolerance > 0 && std::isfinite(tolerance))) {
     throw std::invalid_argument("tolerance is " + std::to_string(tolerance) + ", must be > 0");
   }
-  return Eigen::Map<const EndPointModel::Vector>(p0.data(), n);
+}
+
+EndPointModel::Vector units_of_start(const BoundaryValueProblem& problem,
+                                     const NaturalScales& scales) {
+  EndPointModel::Vector units(problem.dynamics.dof);
+  for (int j = 0; j < problem.dynamics.dof; ++j) {
+    units[j] = problem.is_free_from(j) ? scales.q[j] : scales.momentum(j);
+  }
+  return units;
 }
 
 }  // namespace
@@ -80,13 +103,18 @@ class WarmStart::Implementation {
   // What is asked for at `to`: zero for the momenta of free coordinates.
   [[nodiscard]] Vector target_of(const double* to) const {
     Vector target(problem_.dynamics.dof);
-    for (int j = 0; j < problem_.dynamics.dof; ++j) target[j] = problem_.is_free_to(j) ? 0 : to[j];
+    for (int j = 0; j < problem_.dynamics.dof; ++j) {
+      target[j] = problem_.is_free_to(j) ? 0 : to[j] / scales_.q[j];
+    }
     return target;
   }
 
-  BoundaryValueProblem problem_;
+  NaturalScales scales_;
+  BoundaryValueProblem problem_;  // in these scales, as all below
+  Vector units_;                  // of the unknowns of the start
   double tolerance_;
   double roughness_;  // the error of rough flows
+  std::vector<double> known_;  // the momentum as it was given
   Vector p0_;
   EndPointModel model_;
   bool ready_ = false;
@@ -99,20 +127,23 @@ class WarmStart::Implementation {
 WarmStart::Implementation::Implementation(const BoundaryValueProblem& problem,
                                           const std::vector<double>& p0,
                                           double tolerance)
-    : problem_(problem),
+    : scales_((check(problem, p0, tolerance), natural_scales(problem))),
+      problem_(scales_.trivial() ? problem : rescaled(problem, scales_)),
+      units_(units_of_start(problem, scales_)),
       tolerance_(tolerance),
       roughness_(0.1 * std::sqrt(tolerance)),
-      p0_(checked(problem, p0, tolerance)),
-      model_(problem, p0_) {
+      known_(p0),
+      p0_(Eigen::Map<const Vector>(p0.data(), problem.dynamics.dof).cwiseQuotient(units_)),
+      model_(problem_, p0_) {
   constexpr double kFine = 0.1;
   constexpr double kStricter = 0.01;  // the error of the check over that of the others
   constexpr double kArrives = 1e-6;
   if (!model_.invertible()) return;
-  const std::vector<double> start = phase_point(problem, p0);
-  rough_ = plan_for(problem, start, roughness_);
-  plan_ = plan_for(problem, start, kFine * tolerance);
+  const std::vector<double> start = phase_point(problem_, {p0_.data(), p0_.data() + p0_.size()});
+  rough_ = plan_for(problem, scales_, start, roughness_);
+  plan_ = plan_for(problem, scales_, start, kFine * tolerance);
   const double shorter = std::pow(kStricter, -1.0 / problem.dynamics.order);
-  check_ = StepPlan::equal(0, problem.time, std::lround(std::ceil(shorter * plan_.count)));
+  check_ = StepPlan::equal(0, problem_.time, std::lround(std::ceil(shorter * plan_.count)));
   check_.stop = kStricter * plan_.stop;
   ready_ = end_of(plan_, p0_, end_) &&
            (end_ - target_of(problem.to.data())).cwiseAbs().maxCoeff() <= kArrives;
@@ -134,7 +165,7 @@ WarmStartReport WarmStart::Implementation::solve(const double* to, double* p0) c
   constexpr double kAim = 0.3;  // of the tolerance
   constexpr double kFar = 30;   // times the roughness: a rough flow is good enough
   const int n = problem_.dynamics.dof;
-  std::copy(p0_.data(), p0_.data() + n, p0);
+  std::copy(known_.begin(), known_.end(), p0);
   WarmStartReport report;
   if (!ready_) return report;
   const Vector target = target_of(to);
@@ -171,7 +202,7 @@ WarmStartReport WarmStart::Implementation::solve(const double* to, double* p0) c
     expected = std::max(resolved, std::min(size, size * size / error));
     error = std::max(resolved, size);
   }
-  if (report.converged) std::copy(p.data(), p.data() + n, p0);
+  for (int j = 0; report.converged && j < n; ++j) p0[j] = p[j] * units_[j];
   return report;
 }
 

@@ -4,7 +4,8 @@
 // Broyden's updates of the inverse Jacobian lead to it, superlinearly (Dennis & Schnabel, Numerical
 // Methods for Unconstrained Optimization and Nonlinear Equations, 8.1). Steps, and how well their
 // stages are solved, are those of automatic_flow.h: rough ones far from the target, stricter ones
-// for the flow that should arrive, whose end is the check.
+// for the flow that should arrive, whose end is the check. All of it is done in the natural scales
+// of the problem (problem/natural_scales.h), so that units do not matter.
 #pragma once
 
 #include <limits>
@@ -17,7 +18,8 @@ namespace carnot {
 
 struct WarmStartReport {
   bool converged = false;  // endpoint_error is within the tolerance
-  // max-norm of q(T) - to, of an integration with a hundredth of the error.
+  // max-norm of q(T) - to over the natural scales of the coordinates, of an integration with a
+  // hundredth of the error.
   double endpoint_error = std::numeric_limits<double>::infinity();
   int flows = 0;
 };
@@ -26,7 +28,8 @@ struct WarmStartReport {
 class WarmStart {
  public:
   // From p0, an extremal of `problem`: n^2 + n + 1 tangent flows. Where the start is free in
-  // coordinate j, here and below p0_j stands for q_j(0). Throws std::invalid_argument on bad input.
+  // coordinate j, here and below p0_j stands for q_j(0). `tolerance`: the largest endpoint_error
+  // of an answer. Throws std::invalid_argument on bad input.
   WarmStart(const BoundaryValueProblem& problem,
             const std::vector<double>& p0,
             double tolerance = 1e-10);

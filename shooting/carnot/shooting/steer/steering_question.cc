@@ -30,7 +30,7 @@ double wrapped(const SceneInfo& info, const SteeringRules& rules, std::size_t j,
   return period > 0 ? apart - period * std::round(apart / period) : apart;
 }
 
-// |to - from|; 0 where it is round-off of the coordinates.
+// |to - from| over the sizes of the coordinates; 0 where it is round-off of them.
 double distance_apart(const SceneInfo& info,
                       const SteeringRules& rules,
                       std::span<const double> from,
@@ -41,7 +41,7 @@ double distance_apart(const SceneInfo& info,
     if (rules.is_free(j)) continue;
     const double step = std::abs(wrapped(info, rules, j, to[j] - from[j]));
     apart = apart || step > kSameCoordinate * (std::abs(from[j]) + std::abs(to[j]));
-    sum = std::hypot(sum, step);
+    sum = std::hypot(sum, step / rules.size(j));
   }
   return apart ? sum : 0;
 }

@@ -17,12 +17,14 @@ namespace carnot::internal {
 struct SteeringRules {
   bool reversible = true;
   bool mod_angles = true;
-  double resolution = 0;                           // Euclidean norm of to - from
+  double resolution = 0;                           // Euclidean norm of to - from, over the sizes
+  const std::vector<double>* sizes = nullptr;      // of each coordinate; null: one
   const std::vector<bool>* free_target = nullptr;  // null: none is free
 
   [[nodiscard]] bool is_free(std::size_t j) const {
     return free_target != nullptr && (*free_target)[j];
   }
+  [[nodiscard]] double size(std::size_t j) const { return sizes != nullptr ? (*sizes)[j] : 1; }
 };
 
 // From the answer in the frame back to what was asked.

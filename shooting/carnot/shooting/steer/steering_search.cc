@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "carnot/shooting/extremal/ranking.h"
+#include "carnot/shooting/problem/natural_scales.h"
 #include "carnot/shooting/problem/windings.h"
 
 namespace carnot::internal {
@@ -50,6 +51,7 @@ SteeringSearch::SteeringSearch(Dynamics dynamics, const SteeringOptions& options
                                 " components, the scene has " + std::to_string(zero.size()));
   }
   measure_rates();
+  measure_sizes();
 }
 
 GeodesicOptions SteeringSearch::options_of_search(int count) const {
@@ -98,6 +100,17 @@ void SteeringSearch::measure_rates() {
       p[j] = 0;
     }
   }
+}
+
+// Those of the scene, without a target. A scene whose scales are those of its questions keeps its
+// own units: where there is no metric, or where the metric says nothing at the origin.
+void SteeringSearch::measure_sizes() {
+  const std::vector<double> zero(dynamics_.dof, 0.0);
+  sizes_.assign(dynamics_.dof, 1.0);
+  if (!dynamics_.has_transcription() || dynamics_.has_holonomic()) return;
+  const NaturalScales scales = natural_scales({dynamics_, zero, zero, options_.time});
+  const auto is_size = [](double u) { return u > 0 && std::isfinite(u); };
+  if (std::all_of(scales.q.begin(), scales.q.end(), is_size)) sizes_ = scales.q;
 }
 
 // No path has less action than this, since its angles turn so far.

@@ -48,7 +48,11 @@ class SteeringSearch {
   [[nodiscard]] std::string refusal(std::span<const double> from, std::span<const double> to) const;
   [[nodiscard]] SteeringRules rules() const {
     const std::vector<bool>& free = options_.free_target;
-    return {reversible(), options_.mod_angles, options_.resolution, free.empty() ? nullptr : &free};
+    return {reversible(),
+            options_.mod_angles,
+            options_.resolution,
+            &sizes_,
+            free.empty() ? nullptr : &free};
   }
   // Up to `count`, least action first; one without a geodesic where there is none.
   [[nodiscard]] std::vector<std::shared_ptr<const SteeringAnswer>> answers(
@@ -72,11 +76,13 @@ class SteeringSearch {
                                                    const GeodesicOptions& options,
                                                    SteeringAnswer& failure);
   void measure_rates();
+  void measure_sizes();
   [[nodiscard]] double least_action(const BoundaryValueProblem& problem) const;
   [[nodiscard]] double period_of(int j) const { return dynamics_.info.configuration[j].period; }
 
   Dynamics dynamics_;
   SteeringOptions options_;
+  std::vector<double> sizes_;  // natural scales of the coordinates, the same for all questions
   std::vector<double> rates_;  // of each coordinate with a period, the largest per length; or 0
 };
 
