@@ -88,8 +88,9 @@ bool run_long(LongRun& run, const std::vector<long>& counts, const Progress& pro
   return true;
 }
 
-// Empty when stopped.
-std::vector<EnergyGrowth> grow(const EnergyOptions& options, const Progress& progress) {
+}  // namespace
+
+std::vector<EnergyGrowth> energy_growth(const EnergyOptions& options, const Progress& progress) {
   std::vector<long> counts;
   for (long count = 100; count < options.steps; count *= 10) counts.push_back(count);
   counts.push_back(options.steps);
@@ -124,8 +125,6 @@ std::vector<EnergyGrowth> grow(const EnergyOptions& options, const Progress& pro
   return growth;
 }
 
-}  // namespace
-
 BenchmarkProblem energy_problem() {
   constexpr double kTime = 1000;
   for (BenchmarkTrajectory trajectory : benchmark_trajectories()) {
@@ -150,7 +149,7 @@ std::optional<EnergyResult> run_energy(const EnergyOptions& options,
   all.insert(all.end(), peers.begin(), peers.end());
   const TimingOptions timing = options.quick ? TimingOptions{2e-4, 1} : TimingOptions{2e-3, 5};
   if (!run_contest(all, timing, part_of(progress, 0, kDrift), result.drift)) return std::nullopt;
-  result.growth = grow(options, part_of(progress, kDrift, 1 - kDrift));
+  result.growth = energy_growth(options, part_of(progress, kDrift, 1 - kDrift));
   if (result.growth.empty()) return std::nullopt;
   return result;
 }

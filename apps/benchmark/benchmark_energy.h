@@ -40,6 +40,9 @@ inline constexpr int kEnergyStarts = 6;
 // The vehicle of the other benchmarks, to T = 1000.
 BenchmarkProblem energy_problem();
 
+// How round-off grows up to options.steps. Empty when stopped.
+std::vector<EnergyGrowth> energy_growth(const EnergyOptions& options, const Progress& progress);
+
 // `peers` take part as they are. Nothing when stopped.
 std::optional<EnergyResult> run_energy(const EnergyOptions& options,
                                        const std::vector<Contestant>& peers,

@@ -1,4 +1,4 @@
-// carnot stress: default searches for the geodesics to many random targets.
+// carnot stress: default searches for the geodesics to many random targets; or the hard cases.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "benchmark/benchmark_clock.h"
+#include "benchmark/stress_suite.h"
 #include "carnot/numerics/parallel.h"
 #include "carnot/shooting/find_geodesics.h"
 #include "catalogue/method_table.h"
@@ -36,14 +37,23 @@ counted by reason: the codes of `carnot geodesic`, and irregular-end where the c
 dependent at the target; --json has them one by one, with messages. Times are CPU times.
 With limits, targets are drawn until one keeps to them.
 
+--suite, without a scene, runs hard cases instead: unstable motions, long runs, stiffness, near loss
+of index 1, boundary values at the ends of scales. Each has a law; printed are how far from it carnot
+is, how far is allowed, and how far a naive method is. A star marks a law that is broken. --short
+leaves out what takes minutes, 10^7 steps and quadruple precision.
+
 Examples
   carnot stress vehicle
   carnot stress trailer1 --targets 1000 --seed 7 --json
   carnot stress vehicle --targets 100 --limit 'phi-theta in -0.3:0.3'
+  carnot stress --suite --short
 
-Exit status: 0 success, also where targets are left unsolved; 2 bad input, 130 interrupted.)";
+Exit status: 0 success, also where targets are left unsolved; 1 a law of the suite is broken, 2 bad
+input, 130 interrupted.)";
 
 struct StressOptions {
+  bool suite = false;
+  bool brief = false;
   std::string scene;
   std::vector<std::string> set;
   std::string method;
@@ -180,7 +190,31 @@ std::string stress_text(const Json& json) {
   return text_table(rows);
 }
 
+int run_suite_command(const StressOptions& options, const std::vector<std::string>& arguments) {
+  const auto begin = std::chrono::steady_clock::now();
+  if (!options.scene.empty()) {
+    refuse("SCENE", options.scene, "the suite has scenes of its own", "--suite without a scene");
+  }
+  const SuiteOptions suite{options.brief, parse_threads(options.threads)};
+  check_table_output(options.destination);
+  ProgressBar bar("%", 100, options.destination.quiet);
+  const auto cases = run_suite(suite, bar.callback());
+  if (!cases) return kInterrupted;
+  Result result;
+  result.json = result_head(arguments);
+  result.json.update(suite_json(*cases));
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+  result.json["elapsed_seconds"] = elapsed.count();
+  result.text = [&] { return suite_text(*cases); };
+  const int status = deliver(result, options.destination);
+  const bool held =
+      std::all_of(cases->begin(), cases->end(), [](const StressCase& one) { return one.holds(); });
+  return status == kSuccess && !held ? kNotDelivered : status;
+}
+
 int run_stress(const StressOptions& options, const std::vector<std::string>& arguments) {
+  if (options.suite) return run_suite_command(options, arguments);
+  if (options.brief) refuse("--short", "", "it belongs to the suite", "--suite --short");
   constexpr long kMostTargets = 10000000;
   const auto begin = std::chrono::steady_clock::now();
   const SceneEntry& entry = find_scene(options.scene);
@@ -226,6 +260,8 @@ void add_stress(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<StressOptions>();
   CLI::App& stress = add_laboratory_command(app, "stress");
   stress.add_option("SCENE", options->scene, "a name from `carnot scenes`")->type_name("");
+  stress.add_flag("--suite", options->suite, "hard cases and their laws, without a scene");
+  stress.add_flag("--short", options->brief, "of the suite what takes seconds");
   stress.add_option("--set", options->set, "set a parameter of the scene (repeatable)")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
