@@ -5,7 +5,7 @@ usage: scripts/plant_faults.py [NAME ...]   only those whose words contain one o
 
 The faults are planted in a copy of the last commit, in build/faults, which is built with its tests:
 some twenty minutes at first. The exit status is 0 where every fault is caught, 1 where one is not, and
-2 where a fault no longer fits the code.
+2 where a fault no longer fits the code or no name fits a fault.
 """
 import os
 import pathlib
@@ -95,6 +95,9 @@ def plant(fault):
 def main():
     wanted = sys.argv[1:]
     faults = [f for f in read_faults() if not wanted or any(name in f["what"] for name in wanted)]
+    if not faults:
+        print(f"plant_faults.py: no fault's words contain {' or '.join(wanted)}", file=sys.stderr)
+        return 2
     prepare()
     for binary in sorted({fault["test"].split()[0] for fault in faults}):
         built, log = build(binary)
