@@ -113,7 +113,7 @@ class WarmStart::Implementation {
   BoundaryValueProblem problem_;  // in these scales, as all below
   Vector units_;                  // of the unknowns of the start
   double tolerance_;
-  double roughness_;  // the error of rough flows
+  double roughness_;           // the error of rough flows
   std::vector<double> known_;  // the momentum as it was given
   Vector p0_;
   EndPointModel model_;
