@@ -13,11 +13,13 @@ namespace carnot::apps {
 namespace {
 
 constexpr const char* kFrontFooter = R"(
---length R: the extremals from Q0 as a surface. front: all of them, at the length R. sphere: those that
-are shortest paths up to there, sewn along the cut locus; caustic: their first conjugate points, at
-lengths up to R; cut: where they stop being shortest, at lengths up to R. For scenes with two
-admissible directions; where there are more than three coordinates, --fix momenta until one is left
-free, and see a section. What is left out is said. Columns of a .csv: q_NAME..., p0_NAME..., t_cut,
+--length R: the extremals from Q0 as a surface or, with two coordinates, as a curve. front: all of them,
+at the length R. sphere: those that are shortest paths up to there, sewn along the cut locus; caustic:
+their first conjugate points, or those of --order K, at lengths up to R; cut: where they stop being
+shortest, at lengths up to R. For scenes with two or three admissible directions, and any with two
+coordinates; where there are more than three coordinates, --fix momenta until a surface is left, and
+see a section. --cusps tells the cusp
+lines of a caustic, closed or open, and its umbilics with their type. What is left out is said. Columns of a .csv: q_NAME..., p0_NAME..., t_cut,
 t_conj, length, label; p0 is of speed 1.
 
 --what cut --momentum P0: the time at which the extremal from Q0 with p(0) = P0 stops being a shortest
@@ -31,6 +33,8 @@ Examples
   carnot front unicycle --from 0,0,0 --what sphere --length 2 --check --output sphere.vtp
   carnot front heisenberg-group --from 0,0,0 --what front --length 0.5,1 --output front.ply
   carnot front engel --from 0,0,0,0 --what front --length 1 --fix p_x4=0 --output engel.vtp
+  carnot front grushin --from 0,0 --what sphere --length 1,2 --check --plot spheres.png
+  carnot front unicycle --from 0,0,0 --what caustic --length 8 --order 2 --plot second.png
   carnot front unicycle --from 0,0,0 --momentum 0.4,0.3,0.9 --what cut
   carnot front heisenberg-group --from 0,0,0 --momentum 1,0,2 --what cut --json
   carnot front unicycle --from 0,0,0 --momentum 0.4,0.3,0.9 --what cut --cover --max-time 20
@@ -85,6 +89,7 @@ void add_front_options(CLI::App& app, FrontCall& options) {
       ->type_name("p_NAME=VALUE")
       ->allow_extra_args(false);
   add("--project", options.project, "X,Y,Z", "the coordinates that are seen (the first three)");
+  add("--order", options.order, "K", "of a caustic: the K-th conjugate points (1)");
   add("--edge", options.edge, "E", "longest edge, in widths of the surface (0.1)");
   add("--vertices", options.vertices, "N", "at most so many (100000)");
   add("--bound", options.bound, "W", "how far along the line of momenta (chosen)");
@@ -94,6 +99,7 @@ void add_front_options(CLI::App& app, FrontCall& options) {
       "write surfaces as .vtp, .ply or .csv; a cut time as .json");
   add("--plot", options.run.destination.plot, "FILE", "draw surfaces: .png, .svg, .pdf or .gif");
   app.add_flag("--times", options.times, "cut and conjugate times of a front, too");
+  app.add_flag("--cusps", options.cusps, "cusp lines and umbilics of a caustic");
   app.add_flag("--check", options.check, "of a sphere: closed, Euler characteristic, volume");
   app.add_flag("--json", options.run.destination.json, "print one JSON object");
   app.add_flag("--quiet", options.run.destination.quiet, "no progress bar");

@@ -35,7 +35,8 @@ double energy(const Dynamics& dynamics,
 void check_scene(const Run& run, const std::vector<double>& from) {
   const Dynamics& dynamics = run.dynamics;
   const std::vector<double> rest(from.size(), 0.0);
-  if (!dynamics.autonomous || !dynamics.has_transcription() || energy(dynamics, from, rest) != 0) {
+  const bool knows_velocities = dynamics.has_transcription() || dynamics.on_leaves;
+  if (!dynamics.autonomous || !knows_velocities || energy(dynamics, from, rest) != 0) {
     refuse("SCENE",
            run.entry->info.name,
            "its extremals depend on their speed",
@@ -86,7 +87,7 @@ std::pair<int, double> parse_fixed(const std::string& text, const std::vector<st
 }
 
 void parse_surface(const FrontCall& options, const Run& run, FrontRequest& request) {
-  constexpr long kFewest = 1584;  // of the first mesh
+  constexpr long kFewest = 1584;  // of the largest first mesh
   constexpr long kMost = 5000000;
   const auto names = coordinate_names(*run.entry);
   if (options.length.empty()) refuse_missing("--length", "lengths > 0, as in 1 or 0.5,1,1.5");
@@ -100,8 +101,14 @@ void parse_surface(const FrontCall& options, const Run& run, FrontRequest& reque
     for (const std::string& name : split(options.project, ',')) {
       request.front.project.push_back(coordinate_of("--project", options.project, name, "", names));
     }
-    if (request.front.project.size() != 3) {
+    if (request.front.project.size() != 3 || names.size() < 3) {
       refuse("--project", options.project, "these are not three", "three coordinates");
+    }
+  }
+  if (!options.order.empty()) {
+    request.front.order = static_cast<int>(parse_integer("--order", options.order, 1, 1000));
+    if (request.front.what != FrontKind::kCaustic) {
+      refuse("--order", options.order, "only caustics have one", "--order with --what caustic");
     }
   }
   if (!options.edge.empty()) request.front.edge = parse_between("--edge", options.edge, 1e-3, 1);
@@ -115,22 +122,27 @@ void parse_surface(const FrontCall& options, const Run& run, FrontRequest& reque
   }
   request.output = options.output;
   request.front.times = options.times;
+  request.front.cusps = options.cusps;
+  if (options.cusps && (request.front.what != FrontKind::kCaustic || names.size() < 3)) {
+    refuse("--cusps", "", "only caustics in space have such lines", "--cusps with --what caustic");
+  }
   request.check = options.check;
   if (options.check && request.front.what != FrontKind::kSphere) {
     refuse("--check", "", "only spheres are closed", "--check with --what sphere");
   }
 }
 
-// What the library would refuse: scenes whose momenta of unit speed are no circle times a line.
+// What the library would refuse: scenes whose momenta of unit speed are no surface.
 void check_surface(const FrontRequest& request, const Run& run) {
   try {
     check_wavefront(run.dynamics, request.from, request.front);
   } catch (const std::invalid_argument& error) {
-    refuse(request.front.fixed.empty() ? "SCENE" : "--fix",
-           run.entry->info.name,
-           error.what(),
-           "a scene with two admissible directions, and --fix where it has more than three "
-           "coordinates");
+    refuse(
+        request.front.fixed.empty() ? "SCENE" : "--fix",
+        run.entry->info.name,
+        error.what(),
+        "a scene with two or three admissible directions, and --fix where it has more than three "
+        "coordinates");
   }
 }
 

@@ -20,12 +20,14 @@ struct FrontCall {
   std::string length;
   std::vector<std::string> fix;
   std::string project;
+  std::string order;
   std::string edge;
   std::string vertices;
   std::string bound;
   std::string output;
   bool times = false;
   bool check = false;
+  bool cusps = false;
   bool cover = false;
   bool mod_angles = false;
 };

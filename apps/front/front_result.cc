@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "carnot/plots/script.h"
@@ -59,16 +60,47 @@ const char* name_of(FrontKind what) {
   return kNames[static_cast<int>(what)];
 }
 
+// What is inside of a sphere.
+const char* inside_of(const FrontRequest& request) {
+  return request.from.size() == 2 ? "area" : "volume";
+}
+
+// A singular point of a caustic.
+Json singular_json(const FrontVertex& point) {
+  Json json;
+  json["q"] = point.q;
+  json["p0"] = point.p0;
+  json["conjugate_time"] = point.conjugate_time;
+  json["label"] = point.label;
+  return json;
+}
+
 Json surface_json(const FrontRequest& request, const FrontMesh& mesh) {
   Json json;
   json["length"] = mesh.length;
   json["vertices"] = mesh.vertices.size();
-  json["triangles"] = mesh.triangles.size();
+  if (mesh.segments.empty()) {
+    json["triangles"] = mesh.triangles.size();
+  } else {
+    json["segments"] = mesh.segments.size();
+  }
   json["left_out"] = mesh.message;
   if (request.check) {
     json["closed"] = mesh.closed;
     json["euler_characteristic"] = mesh.closed ? Json(mesh.euler) : Json(nullptr);
-    json["volume"] = mesh.closed ? Json(mesh.volume) : Json(nullptr);
+    json[inside_of(request)] = mesh.closed ? Json(mesh.volume) : Json(nullptr);
+  }
+  if (request.front.cusps) {
+    json["cusps"] = Json::array();
+    for (const CuspEdge& edge : mesh.cusps) {
+      Json line;
+      line["closed"] = edge.closed;
+      line["points"] = Json::array();
+      for (const FrontVertex& point : edge.points) line["points"].push_back(singular_json(point));
+      json["cusps"].push_back(std::move(line));
+    }
+    json["umbilics"] = Json::array();
+    for (const FrontVertex& point : mesh.umbilics) json["umbilics"].push_back(singular_json(point));
   }
   json["searches"] = mesh.searches;
   json["elapsed_seconds"] = mesh.elapsed_seconds;
@@ -92,22 +124,41 @@ Json surfaces_json(const FrontRequest& request,
   return json;
 }
 
+std::string cusps_text(const FrontMesh& mesh) {
+  constexpr int kDigits = 12;
+  const auto closed = std::count_if(
+      mesh.cusps.begin(), mesh.cusps.end(), [](const CuspEdge& edge) { return edge.closed; });
+  std::string text = fmt::format("{} closed cusp lines, {} open ones\n",
+                                 closed,
+                                 static_cast<long>(mesh.cusps.size()) - closed);
+  for (const FrontVertex& point : mesh.umbilics) {
+    text += fmt::format("{} at {}, time {}\n",
+                        point.label,
+                        text_vector(point.q, kDigits),
+                        text_number(point.conjugate_time, kDigits));
+  }
+  return text;
+}
+
 std::string surfaces_text(const FrontRequest& request, const std::vector<FrontMesh>& meshes) {
   std::string text;
   for (const FrontMesh& mesh : meshes) {
-    text += fmt::format("{}: {} of length {:g}, {} vertices, {} triangles\n",
+    text += fmt::format("{}: {} of length {:g}, {} vertices, {}\n",
                         request.run.entry->info.name,
                         name_of(request.front.what),
                         mesh.length,
                         mesh.vertices.size(),
-                        mesh.triangles.size());
+                        mesh.segments.empty() ? fmt::format("{} triangles", mesh.triangles.size())
+                                              : fmt::format("{} segments", mesh.segments.size()));
     if (!mesh.message.empty()) text += mesh.message + '\n';
     if (request.check) {
-      text += mesh.closed
-                  ? fmt::format(
-                        "closed, Euler characteristic {}, volume {:.6g}\n", mesh.euler, mesh.volume)
-                  : "not closed\n";
+      text += mesh.closed ? fmt::format("closed, Euler characteristic {}, {} {:.6g}\n",
+                                        mesh.euler,
+                                        inside_of(request),
+                                        mesh.volume)
+                          : "not closed\n";
     }
+    if (request.front.cusps) text += cusps_text(mesh);
     text += fmt::format("{} searches, {:.3g} seconds\n", mesh.searches, mesh.elapsed_seconds);
   }
   return text;
@@ -117,8 +168,8 @@ std::string surfaces_text(const FrontRequest& request, const std::vector<FrontMe
 std::string surfaces_failure(const FrontRequest& request, const std::vector<FrontMesh>& meshes) {
   for (const FrontMesh& mesh : meshes) {
     if (!mesh.finished) return "the time limit was up before the surface was made";
-    if (mesh.triangles.empty()) {
-      return fmt::format("no triangles at the length {:g}: try a --bound", mesh.length);
+    if (mesh.triangles.empty() && mesh.segments.empty()) {
+      return fmt::format("nothing at the length {:g}: try a --bound", mesh.length);
     }
     if (request.check && !mesh.closed) {
       return fmt::format(
@@ -130,10 +181,11 @@ std::string surfaces_failure(const FrontRequest& request, const std::vector<Fron
 }
 
 std::vector<int> seen_of(const FrontRequest& request) {
-  return request.front.project.empty() ? std::vector<int>{0, 1, 2} : request.front.project;
+  if (!request.front.project.empty()) return request.front.project;
+  return request.from.size() == 2 ? std::vector{0, 1} : std::vector{0, 1, 2};
 }
 
-// The momentum that differs most on the surfaces: that along the line of the cylinder.
+// The momentum that differs most on the surfaces: that along their line.
 int widest_momentum(const std::vector<FrontMesh>& meshes, int dof) {
   int widest = 0;
   double most = -1;
@@ -146,6 +198,38 @@ int widest_momentum(const std::vector<FrontMesh>& meshes, int dof) {
     most = std::max(most, largest);
   }
   return widest;
+}
+
+// Where the sheets are on an axis, in the middle.
+double middle_of(const plots::SurfacePage& page, int axis) {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (const auto& sheet : page.sheets) {
+    for (const auto& point : sheet.points) {
+      if (!std::isfinite(point[axis])) continue;
+      low = std::min(low, point[axis]);
+      high = std::max(high, point[axis]);
+    }
+  }
+  return 0.5 * (low + high);
+}
+
+// Through the start, across the axis where most is to be seen; or through the middle where sheets
+// are elsewhere.
+void choose_section(const FrontRequest& request,
+                    const std::vector<int>& seen,
+                    plots::SurfacePage& page) {
+  std::size_t most = 0;
+  for (const int across : {1, 2, 0}) {
+    std::size_t pieces = 0;
+    const double at = request.from[seen[across]];
+    for (const auto& sheet : page.sheets) pieces += plots::section_of(sheet, across, at).size();
+    if (pieces <= 2 * most) continue;
+    most = pieces;
+    page.across = across;
+    page.at = at;
+  }
+  if (most == 0) page.at = middle_of(page, page.across);
 }
 
 // The colour tells times where they differ, and else the momentum along the line.
@@ -162,32 +246,34 @@ std::string draw_surfaces(const FrontRequest& request,
   page.subtitle = "extremals of unit speed from " +
                   plots::escaped(end_text(request.from, std::vector<bool>(request.from.size())));
   page.color = times ? "length" : "p_{" + plots::symbol(info.configuration[momentum].name) + "}(0)";
-  for (int k = 0; k < 3; ++k) page.axes[k] = info.configuration[seen[k]];
+  page.plane = seen.size() == 2;
+  for (std::size_t k = 0; k < seen.size(); ++k) page.axes[k] = info.configuration[seen[k]];
   page.halved = what == FrontKind::kFront || meshes.size() > 1;
   for (const FrontMesh& mesh : meshes) {
     plots::SurfaceSheet sheet;
     sheet.title = fmt::format("{} {:g}", times ? "up to" : "length", mesh.length);
     sheet.triangles = mesh.triangles;
+    sheet.segments = mesh.segments;
     for (const FrontVertex& v : mesh.vertices) {
-      sheet.points.push_back({v.q[seen[0]], v.q[seen[1]], v.q[seen[2]]});
+      sheet.points.push_back({v.q[seen[0]], v.q[seen[1]], page.plane ? 0 : v.q[seen[2]]});
       const double time = what == FrontKind::kCut ? v.cut_time : v.conjugate_time;
       sheet.values.push_back(times ? time : v.p0[momentum]);
     }
     page.sheets.push_back(std::move(sheet));
   }
-  // Across the axis where most is to be seen.
-  std::size_t most = 0;
-  for (const int across : {1, 2, 0}) {
-    std::size_t pieces = 0;
-    const double at = request.from[seen[across]];
-    for (const auto& sheet : page.sheets) {
-      pieces += plots::section_of(sheet, across, at).size();
+  if (page.plane) return plots::write_surfaces(file, page);
+  for (const FrontMesh& mesh : meshes) {
+    const auto seen_part = [&](const FrontVertex& v) {
+      return std::array{v.q[seen[0]], v.q[seen[1]], v.q[seen[2]]};
+    };
+    for (const CuspEdge& edge : mesh.cusps) {
+      auto& line = page.lines.emplace_back();
+      for (const FrontVertex& v : edge.points) line.push_back(seen_part(v));
+      if (edge.closed) line.push_back(line.front());
     }
-    if (pieces <= 2 * most) continue;
-    most = pieces;
-    page.across = across;
-    page.at = at;
+    for (const FrontVertex& v : mesh.umbilics) page.points.push_back(seen_part(v));
   }
+  choose_section(request, seen, page);
   return plots::write_surfaces(file, page);
 }
 

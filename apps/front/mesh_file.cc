@@ -67,6 +67,12 @@ std::size_t triangles_of(const std::vector<FrontMesh>& meshes) {
   return count;
 }
 
+std::size_t segments_of(const std::vector<FrontMesh>& meshes) {
+  std::size_t count = 0;
+  for (const FrontMesh& mesh : meshes) count += mesh.segments.size();
+  return count;
+}
+
 void put_triangles(const std::vector<FrontMesh>& meshes, const char* format, std::string& out) {
   std::size_t first = 0;
   for (const FrontMesh& mesh : meshes) {
@@ -75,6 +81,22 @@ void put_triangles(const std::vector<FrontMesh>& meshes, const char* format, std
     }
     first += mesh.vertices.size();
   }
+}
+
+void put_segments(const std::vector<FrontMesh>& meshes, std::string& out) {
+  std::size_t first = 0;
+  for (const FrontMesh& mesh : meshes) {
+    for (const auto& [a, b] : mesh.segments) {
+      fmt::format_to(Buffer(out), "{} {}\n", first + a, first + b);
+    }
+    first += mesh.vertices.size();
+  }
+}
+
+// x, y and z of a vertex; a curve in the plane has z = 0.
+void put_place(const FrontVertex& vertex, const std::vector<int>& seen, std::string& out) {
+  for (const int j : seen) fmt::format_to(Buffer(out), "{:.17g} ", vertex.q[j]);
+  for (std::size_t k = seen.size(); k < 3; ++k) out += "0 ";
 }
 
 // The polygon file format of Stanford, as text.
@@ -90,11 +112,17 @@ std::string ply(const SceneInfo& info,
   for (const Column& column : columns) {
     fmt::format_to(Buffer(out), "property double {}\n", column.name);
   }
-  fmt::format_to(Buffer(out), "element face {}\n", triangles_of(meshes));
-  out += "property list uchar int vertex_indices\nend_header\n";
+  const bool curves = segments_of(meshes) > 0;
+  if (curves) {
+    fmt::format_to(Buffer(out), "element edge {}\n", segments_of(meshes));
+    out += "property int vertex1\nproperty int vertex2\nend_header\n";
+  } else {
+    fmt::format_to(Buffer(out), "element face {}\n", triangles_of(meshes));
+    out += "property list uchar int vertex_indices\nend_header\n";
+  }
   for (const FrontMesh& mesh : meshes) {
     for (const FrontVertex& vertex : mesh.vertices) {
-      for (const int j : seen) fmt::format_to(Buffer(out), "{:.17g} ", vertex.q[j]);
+      put_place(vertex, seen, out);
       for (const Column& column : columns) {
         fmt::format_to(Buffer(out), "{:.17g} ", column.value(mesh, vertex));
       }
@@ -102,6 +130,7 @@ std::string ply(const SceneInfo& info,
     }
   }
   put_triangles(meshes, "3 {} {} {}\n", out);
+  put_segments(meshes, out);
   return out;
 }
 
@@ -112,14 +141,16 @@ std::string vtp(const SceneInfo& info,
   std::string out =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
       "byte_order=\"LittleEndian\">\n<PolyData>\n";
-  fmt::format_to(Buffer(out),
-                 "<Piece NumberOfPoints=\"{}\" NumberOfPolys=\"{}\">\n<Points>\n"
-                 "<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">\n",
-                 vertices_of(meshes),
-                 triangles_of(meshes));
+  fmt::format_to(
+      Buffer(out),
+      "<Piece NumberOfPoints=\"{}\" NumberOfLines=\"{}\" NumberOfPolys=\"{}\">\n<Points>\n"
+      "<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">\n",
+      vertices_of(meshes),
+      segments_of(meshes),
+      triangles_of(meshes));
   for (const FrontMesh& mesh : meshes) {
     for (const FrontVertex& vertex : mesh.vertices) {
-      for (const int j : seen) fmt::format_to(Buffer(out), "{:.17g} ", vertex.q[j]);
+      put_place(vertex, seen, out);
       out.back() = '\n';
     }
   }
@@ -134,15 +165,21 @@ std::string vtp(const SceneInfo& info,
     }
     out += "</DataArray>\n";
   }
-  out +=
-      "</PointData>\n<Polys>\n<DataArray type=\"Int32\" Name=\"connectivity\" "
-      "format=\"ascii\">\n";
+  // Cells are lines or triangles: their corners, and where the corners of each end.
+  const bool curves = segments_of(meshes) > 0;
+  const char* cells = curves ? "Lines" : "Polys";
+  const std::size_t corners = curves ? 2 : 3;
+  const std::size_t count = curves ? segments_of(meshes) : triangles_of(meshes);
+  fmt::format_to(Buffer(out),
+                 "</PointData>\n<{}>\n<DataArray type=\"Int32\" Name=\"connectivity\" "
+                 "format=\"ascii\">\n",
+                 cells);
   put_triangles(meshes, "{} {} {}\n", out);
+  put_segments(meshes, out);
   out += "</DataArray>\n<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">\n";
-  for (std::size_t i = 1; i <= triangles_of(meshes); ++i) {
-    fmt::format_to(Buffer(out), "{}\n", 3 * i);
-  }
-  return out + "</DataArray>\n</Polys>\n</Piece>\n</PolyData>\n</VTKFile>\n";
+  for (std::size_t i = 1; i <= count; ++i) fmt::format_to(Buffer(out), "{}\n", corners * i);
+  fmt::format_to(Buffer(out), "</DataArray>\n</{}>\n", cells);
+  return out + "</Piece>\n</PolyData>\n</VTKFile>\n";
 }
 
 }  // namespace

@@ -147,6 +147,23 @@ TEST(FrontCommand, WritesSurfaces) {
               HasSubstr("NumberOfPoints=\"" + std::to_string(vertices) + "\""));
 }
 
+TEST(FrontCommand, WritesAndDrawsCurves) {
+  const Sandbox sandbox;
+  const Words front{"front", "grushin", "--from", "0,0", "--what", "front", "--length", "0.5,1"};
+  const Outcome outcome =
+      sandbox.run(with(front, {"--json", "--output", "c.vtp", "--plot", "c.svg"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto surfaces = outcome.json()["surfaces"];
+  ASSERT_EQ(surfaces.size(), 2U);
+  const long segments = surfaces[0]["segments"].get<long>() + surfaces[1]["segments"].get<long>();
+  EXPECT_THAT(read_text(sandbox.directory() / "c.vtp"),
+              HasSubstr("NumberOfLines=\"" + std::to_string(segments) + "\""));
+  EXPECT_THAT(read_text(sandbox.directory() / "c.svg"), HasSubstr("length 0.5"));
+  ASSERT_EQ(sandbox.run(with(front, {"--output", "c.ply"})).status, 0);
+  EXPECT_THAT(read_text(sandbox.directory() / "c.ply"),
+              HasSubstr("element edge " + std::to_string(segments) + "\n"));
+}
+
 TEST(FrontCommand, DrawsSurfaces) {
   const Sandbox sandbox;
   const Words front{"front",
@@ -224,8 +241,8 @@ TEST(FrontCommand, RefusesInOneLine) {
       {unicycle({"--length", "1", "--check"}), "--check"},
       {unicycle({"--length", "1", "--edge", "2"}), "--edge"},
       {unicycle({"--length", "1", "--vertices", "9"}), "--vertices"},
-      {{"front", "grushin", "--from", "0,0", "--what", "front", "--length", "1"},
-       "three coordinates"},
+      {unicycle({"--length", "1", "--order", "2"}), "--order '2'"},
+      {unicycle({"--length", "1", "--cusps"}), "--cusps"},
       {{"front", "engel", "--from", "0,0,0,0", "--what", "front", "--length", "1"}, "to be fixed"},
       {{"front", "unicycle", "--from", "0,0,0", "--what", "sphere", "--momentum", "1,0,0"},
        "--momentum"},

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "carnot/load_scene.h"
 #include "carnot/shooting/cut_time.h"
 #include "shooting/problems.h"
 
@@ -32,6 +33,13 @@ FrontOptions coarse(FrontKind what, double length) {
 
 Dynamics heisenberg() { return test::heisenberg_group({0, 0, 0}).dynamics; }
 Dynamics unicycle() { return test::unicycle({0, 0, 0}, {0, 0, 0}).dynamics; }
+
+Dynamics grushin() { return test::grushin({0, 0}, {0, 0}).dynamics; }
+// An ellipsoid of three dimensions with these half axes.
+Dynamics ellipsoid(const std::vector<double>& axes) {
+  return make_dynamics(load_scene(CARNOT_SOURCE_DIR "/docs/examples/scenes/ellipsoid.scene")
+                           .with({{"a", axes[0]}, {"b", axes[1]}, {"c", axes[2]}, {"d", axes[3]}}));
+}
 
 // The end at time t on the Heisenberg group: the velocity turns by a = p_z t.
 std::vector<double> heisenberg_end(const std::vector<double>& p, double t) {
@@ -109,6 +117,144 @@ TEST(Wavefront, SpheresOfSE2AreClosedAndEndAtTheirCutTimes) {
   EXPECT_GT(on_seam, 40);
 }
 
+// In the Grushin plane from the origin, p = (c, w) with c = 1 or -1: x = c sin(w t) / w and
+// y = t / (2 w) - sin(2 w t) / (4 w^2) (Agrachev, Barilari & Boscain 2019, sec. 13.2); conjugate
+// where tan(w t) = w t, cut on the y axis at pi / |w|.
+std::vector<double> grushin_end(double c, double w, double t) {
+  if (std::abs(w) * t < 1e-2) {
+    const double a = w * t;
+    return {c * t * (1 - a * a / 6 + std::pow(a, 4) / 120),
+            t * t * a / 3 * (1 - a * a / 5 + 2 * std::pow(a, 4) / 105)};
+  }
+  return {c * std::sin(w * t) / w, t / (2 * w) - std::sin(2 * w * t) / (4 * w * w)};
+}
+
+TEST(Wavefront, OfTheGrushinPlaneIsACurve) {
+  for (const FrontKind what : {FrontKind::kFront, FrontKind::kCaustic, FrontKind::kSphere}) {
+    FrontOptions options = coarse(what, 2);
+    if (what == FrontKind::kSphere) options.edge = 0.1;
+    const FrontMesh mesh = wavefront(grushin(), {0, 0}, options);
+    ASSERT_TRUE(mesh.finished);
+    EXPECT_TRUE(mesh.triangles.empty());
+    ASSERT_GT(mesh.segments.size(), 10U);
+    double worst = 0;
+    for (const FrontVertex& v : mesh.vertices) {
+      const double t = what == FrontKind::kCaustic ? v.conjugate_time : mesh.length;
+      const double a = v.p0[1] * t;
+      if (what == FrontKind::kCaustic) worst = std::max(worst, std::abs(std::tan(a) / a - 1) / a);
+      if (what == FrontKind::kSphere) EXPECT_LE(std::abs(a), pi * (1 + 1e-9));
+      const std::vector<double> end = grushin_end(v.p0[0], v.p0[1], t);
+      worst = std::max({worst, std::abs(v.q[0] - end[0]), std::abs(v.q[1] - end[1])});
+    }
+    EXPECT_LT(worst, kClosedForm);
+    if (what != FrontKind::kSphere) continue;
+    EXPECT_TRUE(mesh.closed);
+    EXPECT_EQ(mesh.euler, 0);
+    // Twice the integral of 2 x dy over half the sphere.
+    constexpr int kPieces = 4000;
+    double area = 0;
+    std::vector<double> before = grushin_end(1, 0, 2);
+    for (int i = 1; i <= kPieces; ++i) {
+      const std::vector<double> end = grushin_end(1, pi / 2 * i / kPieces, 2);
+      area += 2 * (end[0] + before[0]) * (end[1] - before[1]);
+      before = end;
+    }
+    EXPECT_NEAR(mesh.volume, area, 5e-3 * area);
+    EXPECT_LT(mesh.volume, area);
+  }
+}
+
+TEST(Wavefront, OfARegularPointOfThePlaneIsAClosedCurve) {
+  FrontOptions options = coarse(FrontKind::kFront, 0.5);
+  options.edge = 0.05;
+  const FrontMesh mesh = wavefront(grushin(), {1, 0}, options);
+  ASSERT_TRUE(mesh.finished);
+  EXPECT_EQ(mesh.vertices.size(), mesh.segments.size());
+  EXPECT_GT(mesh.segments.size(), 48U);  // it was refined
+  EXPECT_EQ(mesh.message, "");           // nothing is left out
+}
+
+// On the Heisenberg group det X vanishes where sin(a / 2) (sin(a / 2) - a / 2 cos(a / 2)) does,
+// a = p_z t: at 2 pi, at the first root of tan(a / 2) = a / 2, and at 4 pi.
+TEST(Wavefront, ConjugateTimesHaveAnOrder) {
+  const double roots[] = {2 * pi, 8.986818915818129, 4 * pi};
+  for (int order = 1; order <= 3; ++order) {
+    FrontOptions options = coarse(FrontKind::kCaustic, 1);
+    options.order = order;
+    const FrontMesh mesh = wavefront(heisenberg(), {0, 0, 0}, options);
+    ASSERT_TRUE(mesh.finished);
+    ASSERT_FALSE(mesh.triangles.empty());
+    double worst = 0;
+    for (const FrontVertex& v : mesh.vertices) {
+      worst =
+          std::max(worst, std::abs(v.conjugate_time * std::abs(v.p0[2]) / roots[order - 1] - 1));
+    }
+    EXPECT_LT(worst, 1e-11) << order;
+  }
+}
+
+// The antipode of a point of the round sphere is conjugate twice, which a sign of det X does not
+// tell; the point itself is so again at 2 pi.
+TEST(Wavefront, SeesEvenMultiplicities) {
+  const Dynamics round = ellipsoid({1, 1, 1, 1});
+  const std::vector<double> from{0.5, 0.5, 0.5, 0.5};
+  for (int order = 1; order <= 3; ++order) {
+    FrontOptions options = coarse(FrontKind::kCaustic, 7);
+    options.order = order;
+    options.fixed = {{3, 0.0}};
+    const FrontMesh mesh = wavefront(round, from, options);
+    ASSERT_TRUE(mesh.finished);
+    ASSERT_GT(mesh.vertices.size(), 1000U);
+    const double expected = order < 3 ? pi : 2 * pi;
+    double worst = 0;
+    for (const FrontVertex& v : mesh.vertices) {
+      worst = std::max(worst, std::abs(v.conjugate_time - expected));
+      for (int j = 0; j < 4; ++j) {
+        worst = std::max(worst, std::abs(v.q[j] - (order < 3 ? -from[j] : from[j])));
+      }
+    }
+    EXPECT_LT(worst, 1e-11) << order;
+  }
+}
+
+// Of a general point of an ellipsoid with different axes: four hyperbolic umbilics, which the
+// method's symplectic form keeps at a few coarse steps, too (Offen & Ober-Bloebaum 2021).
+// Of a general point of an ellipsoid with different axes, four hyperbolic umbilics (Offen &
+// Ober-Bloebaum 2021). Both sheets that meet there lead to the same ones. On each of them one cusp
+// line is closed, and two lead from one umbilic to another.
+TEST(Wavefront, TheEllipsoidHasFourHyperbolicUmbilics) {
+  const Dynamics dynamics = ellipsoid({1, 1.2, 1.5, 1.9});
+  constexpr double kSame = 1e-10;
+  std::vector<std::vector<double>> first;
+  for (const int order : {1, 2}) {
+    FrontOptions options = coarse(FrontKind::kCaustic, 12);
+    options.fixed = {{3, 0.0}};
+    options.cusps = true;
+    options.order = order;
+    const FrontMesh mesh = wavefront(dynamics, {0.5, 0.6, 0.75, 0.95}, options);
+    ASSERT_TRUE(mesh.finished);
+    ASSERT_EQ(mesh.umbilics.size(), 4U);
+    for (const FrontVertex& v : mesh.umbilics) EXPECT_STREQ(v.label, "hyperbolic umbilic");
+    EXPECT_EQ(mesh.cusps.size(), 3U);
+    EXPECT_EQ(
+        std::count_if(
+            mesh.cusps.begin(), mesh.cusps.end(), [](const CuspEdge& edge) { return edge.closed; }),
+        1);
+    if (order == 1) {
+      for (const FrontVertex& v : mesh.umbilics) first.push_back(v.q);
+      continue;
+    }
+    for (const FrontVertex& v : mesh.umbilics) {
+      const auto is_here = [&](const std::vector<double>& q) {
+        double apart = 0;
+        for (int j = 0; j < 4; ++j) apart = std::max(apart, std::abs(q[j] - v.q[j]));
+        return apart < kSame;
+      };
+      EXPECT_EQ(std::count_if(first.begin(), first.end(), is_here), 1);
+    }
+  }
+}
+
 TEST(Wavefront, IsRefinedUntilEdgesAreShort) {
   FrontOptions options = coarse(FrontKind::kFront, 1);
   options.edge = 0.05;
@@ -175,7 +321,6 @@ TEST(Wavefront, RefusesWhatHasNoSurface) {
     EXPECT_THROW((void)wavefront(dynamics, from, options), std::invalid_argument);
   };
   const auto nothing = [](FrontOptions&) {};
-  refused(test::grushin({0, 0}, {0, 0}).dynamics, {0, 0}, nothing);
   refused(test::engel({0, 0, 0, 0}).dynamics, {0, 0, 0, 0}, nothing);  // a momentum is to be fixed
   refused(test::satellite_quaternion({1, 0, 0, 0}).dynamics, {1, 0, 0, 0}, nothing);
   refused(unicycle(), {0, 0}, nothing);
@@ -185,6 +330,9 @@ TEST(Wavefront, RefusesWhatHasNoSurface) {
   refused(unicycle(), origin, [](FrontOptions& o) { o.project = {0, 1}; });
   refused(unicycle(), origin, [](FrontOptions& o) { o.project = {0, 1, 3}; });
   refused(unicycle(), origin, [](FrontOptions& o) { o.fixed = {{1, 0.0}}; });
+  refused(unicycle(), origin, [](FrontOptions& o) { o.order = 2; });
+  refused(unicycle(), origin, [](FrontOptions& o) { o.cusps = true; });
+  refused(grushin(), {0, 0}, [](FrontOptions& o) { o.project = {0, 1, 1}; });
   FrontOptions stopped = coarse(FrontKind::kCut, 1);
   stopped.progress = [](double) { return false; };
   EXPECT_FALSE(wavefront(unicycle(), origin, stopped).finished);

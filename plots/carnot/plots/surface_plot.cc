@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "carnot/plots/page.h"
 #include "carnot/plots/plot_file.h"
@@ -31,6 +32,12 @@ std::array<Axis, 3> axes_of(const SurfacePage& page) {
       for (const int i : t) {
         if (!finite(sheet.points[i])) continue;
         for (int k = 0; k < 3; ++k) ranges[k].include(sheet.points[i][k]);
+      }
+    }
+    for (const auto& segment : sheet.segments) {
+      for (const int i : segment) {
+        if (!finite(sheet.points[i])) continue;
+        for (int k = 0; k < 2; ++k) ranges[k].include(sheet.points[i][k]);
       }
     }
   }
@@ -124,40 +131,58 @@ void draw_space(Script& script, const SurfacePage& page, const std::array<Axis, 
            << "label " << quoted_markup(axes[k].label(symbol(page.axes[k].name), page.axes[k].unit))
            << " tc rgb '#000000' offset 0, 0" << (k == 2 ? " rotate" : "") << "\n";
   }
-  script << "splot $surface using 1:2:3:4 with pm3d\n";
+  const auto row = [&](const std::array<double, 3>& p) {
+    return Row{axes[0].at(p[0]), axes[1].at(p[1]), axes[2].at(p[2])};
+  };
+  Rows lines;
+  Rows points;
+  for (const auto& line : page.lines) {
+    for (const auto& p : line) lines.push_back(row(p));
+    lines.push_back(gap());
+    lines.push_back(gap());
+  }
+  for (const auto& p : page.points) points.push_back(row(p));
+  const std::string line_data = script.data(lines);
+  const std::string point_data = script.data(points);
+  script << "splot $surface using 1:2:3:4 with pm3d";
+  if (!line_data.empty()) script << ", " << line_data << " with lines lw 2.5 lc rgb '#000000'";
+  if (!point_data.empty()) {
+    script << ", " << point_data << " with points pt 7 ps 1.4 lc rgb '#d7191c'";
+  }
+  script << "\n";
   script << "unset pm3d\nunset colorbox\nunset zlabel\n";
 }
 
-void draw_section(Script& script,
-                  const Picture& picture,
-                  const SurfacePage& page,
-                  const std::array<Axis, 3>& axes) {
-  const auto [across, up] = others(page.across);
-  const Box box{925, 110, 430, 490};
-  Axis x = axes[across];
-  Axis y = axes[up];
+using Pieces = std::vector<std::array<std::array<double, 2>, 2>>;
+
+// Lines on two of the axes, those of each sheet in its colour.
+void draw_lines(Script& script,
+                const Picture& picture,
+                const Box& box,
+                const SurfacePage& page,
+                const std::array<Axis, 3>& axes,
+                const std::array<int, 2>& on,
+                const char* key,
+                const std::vector<Pieces>& sheets) {
+  Axis x = axes[on[0]];
+  Axis y = axes[on[1]];
   constexpr double kMargin = 1.1;
   constexpr double kTics = 90;
   x.widen(kMargin);
   y.widen(kMargin);
   set_box(script, picture, box);
   script << "set border 3 lw 0.8 lc rgb '#000000'\nset xtics nomirror\nset ytics nomirror\n"
-         << "set key outside top center horizontal\nset grid lw 0.5 lc rgb '#e4e4e4'\n";
+         << "set key " << key << " horizontal\nset grid lw 0.5 lc rgb '#e4e4e4'\n";
   set_axis(script, "x", x, box.width, kTics);
   set_axis(script, "y", y, box.height, kTics);
-  script << "set xlabel "
-         << quoted_markup(x.label(symbol(page.axes[across].name), page.axes[across].unit))
-         << "\nset ylabel "
-         << quoted_markup(y.label(symbol(page.axes[up].name), page.axes[up].unit)) << "\n";
-  put_text(script,
-           picture,
-           box.x + box.width / 2,
-           box.y + box.height + 55,
-           "section at " + symbol(page.axes[page.across].name) + " = " + number(page.at, 4));
+  const auto label = [&](const Axis& axis, int k) {
+    return quoted_markup(axis.label(symbol(page.axes[k].name), page.axes[k].unit));
+  };
+  script << "set xlabel " << label(x, on[0]) << "\nset ylabel " << label(y, on[1]) << "\n";
   Plot plot(script, "plot", {x.lower, y.lower});
-  for (std::size_t i = 0; i < page.sheets.size(); ++i) {
+  for (std::size_t i = 0; i < sheets.size(); ++i) {
     Rows rows;
-    for (const auto& piece : section_of(page.sheets[i], page.across, page.at)) {
+    for (const auto& piece : sheets[i]) {
       for (const auto& end : piece) rows.push_back({x.at(end[0]), y.at(end[1])});
       rows.push_back(gap());
     }
@@ -167,6 +192,47 @@ void draw_section(Script& script,
     }
   }
   plot.draw();
+}
+
+void draw_section(Script& script,
+                  const Picture& picture,
+                  const SurfacePage& page,
+                  const std::array<Axis, 3>& axes) {
+  const Box box{925, 110, 430, 490};
+  std::vector<Pieces> sheets;
+  for (const SurfaceSheet& sheet : page.sheets) {
+    sheets.push_back(section_of(sheet, page.across, page.at));
+  }
+  put_text(script,
+           picture,
+           box.x + box.width / 2,
+           box.y + box.height + 55,
+           "section at " + symbol(page.axes[page.across].name) + " = " + number(page.at, 4));
+  draw_lines(script, picture, box, page, axes, others(page.across), "outside top center", sheets);
+}
+
+void draw_curves(Script& script,
+                 const Picture& picture,
+                 const SurfacePage& page,
+                 const std::array<Axis, 3>& axes) {
+  std::vector<Pieces> sheets;
+  for (const SurfaceSheet& sheet : page.sheets) {
+    Pieces pieces;
+    for (const auto& [i, j] : sheet.segments) {
+      const auto& a = sheet.points[i];
+      const auto& b = sheet.points[j];
+      if (finite(a) && finite(b)) pieces.push_back({{{a[0], a[1]}, {b[0], b[1]}}});
+    }
+    sheets.push_back(std::move(pieces));
+  }
+  draw_lines(script,
+             picture,
+             {110, 90, 1200, 560},
+             page,
+             axes,
+             {0, 1},
+             "at screen 0.5, 0.92 center top",
+             sheets);
 }
 
 }  // namespace
@@ -202,9 +268,13 @@ std::string write_surfaces(const std::string& file, const SurfacePage& page) {
            kWidth / 2,
            kHeight - 28,
            page.title + (page.subtitle.empty() ? "" : "   {/*0.8 " + page.subtitle + "}"));
-  draw_space(script, page, axes);
-  clear_settings(script);
-  draw_section(script, picture, page, axes);
+  if (page.plane) {
+    draw_curves(script, picture, page, axes);
+  } else {
+    draw_space(script, page, axes);
+    clear_settings(script);
+    draw_section(script, picture, page, axes);
+  }
   script << "unset multiplot\n";
   picture.commands = script.text();
   return write_picture(file, picture);

@@ -1,5 +1,5 @@
 // Pictures of surfaces of triangles in space, shaded and sorted by depth, with a section beside
-// them.
+// them; and of curves in the plane.
 #pragma once
 
 #include <array>
@@ -15,6 +15,7 @@ struct SurfaceSheet {
   std::vector<std::array<double, 3>> points;  // places that are not finite are left out
   std::vector<double> values;                 // what the colour tells, one for each point
   std::vector<std::array<int, 3>> triangles;
+  std::vector<std::array<int, 2>> segments;  // of a curve in the plane, instead of triangles
 };
 
 struct SurfacePage {
@@ -28,6 +29,10 @@ struct SurfacePage {
   int across = 1;
   double at = 0;
   bool halved = false;
+  // Lines in space and single points that are drawn over the sheets, also where these hide them.
+  std::vector<std::vector<std::array<double, 3>>> lines;
+  std::vector<std::array<double, 3>> points;
+  bool plane = false;  // sheets are curves on the first two axes
 };
 
 // Ends of the pieces of the section of a sheet: two points each, on the other two axes.

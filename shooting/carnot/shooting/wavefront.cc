@@ -11,14 +11,15 @@
 #include <stdexcept>
 
 #include "carnot/numerics/parallel.h"
+#include "carnot/shooting/front/caustic_lines.h"
 #include "carnot/shooting/front/cut_values.h"
-#include "carnot/shooting/front/cylinder.h"
 #include "carnot/shooting/front/momentum_bound.h"
 #include "carnot/shooting/front/ray_ends.h"
 #include "carnot/shooting/front/seam.h"
 #include "carnot/shooting/front/surface.h"
+#include "carnot/shooting/front/unit_momenta.h"
 #include "carnot/shooting/linear/illinois.h"
-#include "carnot/shooting/rays/first_conjugate.h"
+#include "carnot/shooting/rays/conjugate_time.h"
 #include "carnot/shooting/rays/ray.h"
 
 namespace carnot {
@@ -39,13 +40,19 @@ void validate(const Dynamics& dynamics,
               const FrontOptions& options) {
   refuse_unless(static_cast<int>(from.size()) == dynamics.dof,
                 "from needs one number for each coordinate");
-  refuse_unless(dynamics.dof >= 3, "a surface needs three coordinates");
-  refuse_unless(dynamics.holonomic == 0, "surfaces are not of scenes with holonomic constraints");
+  refuse_unless(dynamics.dof >= 2, "a front needs two coordinates");
+  refuse_unless(dynamics.holonomic == 0 || dynamics.on_leaves,
+                "fronts with holonomic constraints are of scenes from text");
   refuse_unless(options.length > 0 && std::isfinite(options.length), "length must be > 0");
   refuse_unless(options.edge > 0 && options.angle > 0, "edge and angle must be > 0");
   refuse_unless(options.bound >= 0 && std::isfinite(options.bound), "bound must be >= 0");
-  refuse_unless(options.project.empty() || options.project.size() == 3,
+  refuse_unless(options.project.empty() || (options.project.size() == 3 && dynamics.dof >= 3),
                 "three coordinates are seen");
+  refuse_unless(options.order >= 1, "order must be >= 1");
+  refuse_unless(options.order == 1 || options.what == FrontKind::kCaustic,
+                "an order is that of a caustic");
+  refuse_unless(!options.cusps || (options.what == FrontKind::kCaustic && dynamics.dof >= 3),
+                "cusps are those of a caustic in space");
   for (const int j : options.project) {
     refuse_unless(j >= 0 && j < dynamics.dof, "there is no such coordinate");
   }
@@ -64,20 +71,21 @@ class FrontMaker {
         from_(from),
         options_(options),
         n_(dynamics.dof),
-        cylinder_(dynamics, from, options.fixed),
-        seen_(options.project.empty() ? std::vector<int>{0, 1, 2} : options.project),
+        momenta_(dynamics, from, options.fixed),
+        seen_(options.project),
         horizon_(kMargin * options.length),
         cuts_(dynamics,
               from,
               {horizon_, options.mod_angles, options.seed, options.threads, options.progress}) {
-    (void)validated_speed(dynamics, from, cylinder_.momentum(0, 0));
+    (void)validated_speed(dynamics, from, momenta_.momentum({Eigen::Vector3d::UnitX(), 0}));
+    for (int k = 0; seen_.size() < 3 && k < std::min(n_, 3); ++k) seen_.push_back(k);
   }
 
   void run(FrontMesh& mesh) {
     mesh.length = options_.length;
-    bound_ = options_.bound > 0 ? options_.bound : chosen_bound();
-    surface_ = cylinder_grid(kAround, kAlong, bound_);
-    mesh.finished = make_first() && refined() && cut_out() && made_times();
+    if (momenta_.has_line()) bound_ = options_.bound > 0 ? options_.bound : chosen_bound();
+    surface_ = first_surface(momenta_, bound_);
+    mesh.finished = make_first() && refined() && made_cusps(mesh) && cut_out() && made_times();
     if (mesh.finished) deliver(mesh);
     mesh.searches = cuts_.searches();
     mesh.message = left_out();
@@ -91,7 +99,7 @@ class FrontMaker {
     return options_.what == FrontKind::kFront || options_.what == FrontKind::kSphere;
   }
   [[nodiscard]] std::vector<double> momentum(int i) const {
-    return cylinder_.momentum(surface_.vertices[i].phi, surface_.vertices[i].w);
+    return momenta_.momentum(surface_.vertices[i].place);
   }
   bool go_on() {
     if (!stopped_ && options_.progress && !options_.progress(0)) stopped_ = true;
@@ -112,7 +120,7 @@ class FrontMaker {
     if (options_.what == FrontKind::kFront) part = kOfFront;
     if (!at_length()) part = kOfTimes;
     const double bound =
-        conjugate_bound(dynamics_, from_, cylinder_, part * options_.length, options_.threads);
+        conjugate_bound(dynamics_, from_, momenta_, part * options_.length, options_.threads);
     return std::isfinite(bound) ? bound : kAnyway / options_.length;
   }
 
@@ -122,21 +130,22 @@ class FrontMaker {
     ends_.resize(static_cast<std::size_t>(last) * n_, kUnknown);
     if (!go_on()) return false;
     if (at_length()) {
-      const std::vector<double> ends =
-          ray_ends(dynamics_,
-                   from_,
-                   momenta_from(first),
-                   {cylinder_.momentum(0.7, bound_), cylinder_.momentum(2.3, -bound_)},
-                   options_.length,
-                   options_.threads);
+      std::vector<std::vector<double>> longest;
+      for (const Eigen::Vector3d& c : momenta_.directions(3)) {
+        for (const double side : {1.0, -1.0})
+          longest.push_back(momenta_.momentum({c, side * bound_}));
+      }
+      const std::vector<double> ends = ray_ends(
+          dynamics_, from_, momenta_from(first), longest, options_.length, options_.threads);
       std::copy(ends.begin(), ends.end(), ends_.begin() + static_cast<long>(first) * n_);
     } else {
       times_.resize(last, kUnknown);
       for_all(first, last, [&](int i) {
         if (!go_on()) return;
         const Ray ray(dynamics_, from_, momentum(i));
-        times_[i] =
-            options_.what == FrontKind::kCut ? cuts_[i].t : first_conjugate_time(ray, horizon_);
+        times_[i] = options_.what == FrontKind::kCut
+                        ? cuts_[i].t
+                        : conjugate_time(ray, horizon_, options_.order);
         if (!(times_[i] <= kFarthest * options_.length)) return;
         const std::vector<double> z = ray.at(times_[i], ray.enough_steps(times_[i]));
         if (!z.empty()) std::copy_n(z.begin(), n_, ends_.begin() + static_cast<long>(i) * n_);
@@ -145,7 +154,7 @@ class FrontMaker {
     if (sizes_.empty()) find_sizes();
     for (int i = first; i < last; ++i) {
       surface_.vertices[i].image.clear();
-      for (int k = 0; k < 3; ++k) {
+      for (std::size_t k = 0; k < seen_.size(); ++k) {
         surface_.vertices[i].image.push_back(ends_[static_cast<std::size_t>(i) * n_ + seen_[k]] /
                                              sizes_[k]);
       }
@@ -186,33 +195,22 @@ class FrontMaker {
       std::erase_if(surface_.triangles, [&](const auto& t) {
         return std::none_of(t.begin(), t.end(), [&](int i) { return is_inside(i); });
       });
+      std::erase_if(surface_.segments,
+                    [&](const auto& s) { return !is_inside(s[0]) && !is_inside(s[1]); });
     }
     return make_images(0);
   }
 
   // Of the mesh as it is, and checked.
   bool find_cuts() {
-    constexpr int kChecked = 16;
+    const int checked = momenta_.dimension() == 1 ? 4 : 16;
     constexpr int kRounds = 3;
-    const std::vector<std::vector<int>> neighbours = neighbours_of_vertices();
+    const std::vector<std::vector<int>> neighbours = surface_.neighbours();
     if (!cuts_.add(momenta_from(0), neighbours)) return false;
-    for (int round = 0; round < kRounds && cuts_.check(kChecked, neighbours) > 0; ++round) {
+    for (int round = 0; round < kRounds && cuts_.check(checked, neighbours) > 0; ++round) {
       if (!go_on()) return false;
     }
     return go_on();
-  }
-
-  [[nodiscard]] std::vector<std::vector<int>> neighbours_of_vertices() const {
-    std::vector<std::set<int>> sets(surface_.vertices.size());
-    for (const auto& t : surface_.triangles) {
-      for (const int i : t) sets[i].insert(t.begin(), t.end());
-    }
-    std::vector<std::vector<int>> neighbours;
-    for (std::size_t i = 0; i < sets.size(); ++i) {
-      sets[i].erase(static_cast<int>(i));
-      neighbours.emplace_back(sets[i].begin(), sets[i].end());
-    }
-    return neighbours;
   }
 
   // Whether a vertex belongs to the surface.
@@ -233,7 +231,10 @@ class FrontMaker {
 
   bool refined() {
     constexpr double kShortest = 0.125;
-    Refinement how{options_.edge, options_.angle, kShortest * options_.edge, options_.most, {}};
+    constexpr double kOfCurves = 0.25;  // they cost little, and kinks are seen
+    const double part = momenta_.dimension() == 1 ? kOfCurves : 1;
+    const double edge = part * options_.edge;
+    Refinement how{edge, part * options_.angle, kShortest * edge, options_.most, {}};
     how.make = [this](int first, const std::vector<Between>& parents) {
       return make(first, parents);
     };
@@ -245,7 +246,7 @@ class FrontMaker {
   [[nodiscard]] CutValue value_at(const std::vector<double>& p, int near) {
     if (needs_cuts()) return cuts_.beside(p, near);
     CutValue value;
-    value.t = first_conjugate_time(Ray(dynamics_, from_, p), horizon_);
+    value.t = conjugate_time(Ray(dynamics_, from_, p), horizon_, options_.order);
     return value;
   }
 
@@ -257,7 +258,7 @@ class FrontMaker {
     const auto rate_at = [&](double part) {
       const SurfaceVertex trial = surface_.between({place.a, place.b, part});
       const int near = std::abs(part) < 0.5 && std::isfinite(time(place.a)) ? place.a : place.b;
-      const double t = value_at(cylinder_.momentum(trial.phi, trial.w), near).t;
+      const double t = value_at(momenta_.momentum(trial.place), near).t;
       return std::optional(1 / t - wanted);
     };
     place.part =
@@ -285,6 +286,47 @@ class FrontMaker {
     return go_on();
   }
 
+  // Of the mesh before it is cut at R: lines may cross its border.
+  bool made_cusps(FrontMesh& mesh) {
+    if (!options_.cusps) return true;
+    const CausticLines lines = caustic_lines(
+        {dynamics_,
+         from_,
+         momenta_,
+         surface_,
+         times_,
+         [this](const UnitMomentum& at) {
+           return conjugate_time(
+               Ray(dynamics_, from_, momenta_.momentum(at)), horizon_, options_.order);
+         },
+         options_.length,
+         options_.threads,
+         [this] { return go_on(); }});
+    for (const CuspLine& line : lines.cusps) {
+      CuspEdge edge{{}, line.closed};
+      for (const CausticPoint& point : line.points) {
+        edge.points.push_back(vertex_at(point.at, point.t, "cusp"));
+      }
+      mesh.cusps.push_back(std::move(edge));
+    }
+    for (const Umbilic& one : lines.umbilics) {
+      mesh.umbilics.push_back(
+          vertex_at(one.at, one.t, one.hyperbolic ? "hyperbolic umbilic" : "elliptic umbilic"));
+    }
+    return lines.finished;
+  }
+
+  [[nodiscard]] FrontVertex vertex_at(const UnitMomentum& at, double t, const char* label) const {
+    FrontVertex vertex;
+    vertex.p0 = momenta_.momentum(at);
+    vertex.conjugate_time = t;
+    vertex.label = label;
+    const Ray ray(dynamics_, from_, vertex.p0);
+    vertex.q = ray.at(t, ray.enough_steps(t));
+    vertex.q.resize(n_, kUnknown);
+    return vertex;
+  }
+
   bool made_times() {
     if (options_.what != FrontKind::kFront || !options_.times) return true;
     return find_cuts();
@@ -295,7 +337,7 @@ class FrontMaker {
     for (int i = border_; i < static_cast<int>(surface_.vertices.size()); ++i) {
       const CutValue& value = cuts_[i];
       BorderVertex one{i, value.at_conjugate || value.partner.p.empty(), {}};
-      if (!one.at_conjugate) one.partner = cylinder_.coordinates(value.partner.p);
+      if (!one.at_conjugate) one.partner = momenta_.place(value.partner.p);
       border.push_back(one);
     }
     const std::vector<int> classes = sew(
@@ -305,19 +347,19 @@ class FrontMaker {
           (void)make_images(first);
         },
         surface_);
-    Surface whole{{}, surface_.triangles};
+    Surface whole{{}, surface_.triangles, surface_.segments};
     merge(classes, whole);
     const Topology topology = topology_of(whole);
     mesh.closed = topology.closed;
     mesh.euler = topology.euler;
-    if (mesh.closed) mesh.volume = volume();
+    if (mesh.closed) mesh.volume = n_ == 2 ? area() : volume();
     // In one place only what has the same image: angles may have turned once more.
     constexpr double kSamePlace = 1e-7;
     std::vector<int> same = classes;
     for (std::size_t i = 0; i < same.size(); ++i) {
       const auto& a = surface_.vertices[i].image;
       const auto& b = surface_.vertices[classes[i]].image;
-      for (int k = 0; k < 3; ++k) {
+      for (std::size_t k = 0; k < a.size(); ++k) {
         if (!(std::abs(a[k] - b[k]) <= kSamePlace)) same[i] = static_cast<int>(i);
       }
     }
@@ -341,8 +383,22 @@ class FrontMaker {
     return std::abs(sum);
   }
 
+  // The flux of (x, 0) through the curve, where x is no angle. The inside is on the same side of
+  // all segments or, of those with the opposite c of two lines, on the other.
+  [[nodiscard]] double area() const {
+    const int x = dynamics_.info.configuration[0].period > 0 ? 1 : 0;
+    const bool lines = momenta_.has_line();
+    double sum = 0;
+    for (const auto& [a, b] : surface_.segments) {
+      const auto at = [&](int i, int k) { return ends_[static_cast<std::size_t>(i) * 2 + k]; };
+      const double flux = 0.5 * (at(a, x) + at(b, x)) * (at(b, 1 - x) - at(a, 1 - x));
+      sum += lines && surface_.vertices[a].place.c[0] < 0 ? -flux : flux;
+    }
+    return std::abs(sum);
+  }
+
   void deliver(FrontMesh& mesh) {
-    if (options_.what == FrontKind::kSphere && n_ == 3) sew_sphere(mesh);
+    if (options_.what == FrontKind::kSphere && n_ <= 3) sew_sphere(mesh);
     std::vector<int> kept;
     drop_unused(surface_, kept);
     for (const int i : kept) {
@@ -354,6 +410,7 @@ class FrontMaker {
       mesh.vertices.push_back(std::move(vertex));
     }
     mesh.triangles = surface_.triangles;
+    mesh.segments = surface_.segments;
   }
 
   void fill_times(int i, FrontVertex& vertex) const {
@@ -372,8 +429,8 @@ class FrontMaker {
   [[nodiscard]] std::string left_out() const {
     std::ostringstream text;
     text.precision(4);
-    if (options_.what != FrontKind::kSphere) {
-      text << "left out: momenta beyond " << bound_ << " along the line of the cylinder";
+    if (options_.what != FrontKind::kSphere && momenta_.has_line()) {
+      text << "left out: momenta beyond " << bound_ << " along their line";
       if (!at_length() && options_.bound == 0)
         text << ", where times are below " << options_.length / 8;
     }
@@ -384,8 +441,6 @@ class FrontMaker {
     return text.str();
   }
 
-  static constexpr int kAround = 48;  // vertices of the first mesh
-  static constexpr int kAlong = 33;
   // Times are followed to here, so that what borders on the surface has an image, too.
   static constexpr double kMargin = 1.5;
   static constexpr double kFarthest = 2;  // where images are still made
@@ -394,7 +449,7 @@ class FrontMaker {
   const std::vector<double>& from_;
   const FrontOptions& options_;
   int n_;
-  Cylinder cylinder_;
+  UnitMomenta momenta_;
   std::vector<int> seen_;
   double horizon_;
   CutValues cuts_;
@@ -414,8 +469,8 @@ void check_wavefront(const Dynamics& dynamics,
                      const std::vector<double>& from,
                      const FrontOptions& options) {
   validate(dynamics, from, options);
-  const Cylinder cylinder(dynamics, from, options.fixed);
-  (void)validated_speed(dynamics, from, cylinder.momentum(0, 0));
+  const UnitMomenta momenta(dynamics, from, options.fixed);
+  (void)validated_speed(dynamics, from, momenta.momentum({Eigen::Vector3d::UnitX(), 0}));
 }
 
 FrontMesh wavefront(const Dynamics& dynamics,

@@ -1,20 +1,23 @@
-// Fronts, spheres, caustics and cut loci of a point, as surfaces of triangles.
+// Fronts, spheres, caustics and cut loci of a point, as surfaces of triangles or, in the plane, as
+// curves.
 //
-// The extremals of unit speed from a point are a cylinder of momenta, a circle times a line
-// (front/cylinder.h). Of these a mesh shows
+// The extremals of unit speed from a point are told by their momenta, a circle times a line where
+// two directions are admissible, a sphere where three are (front/unit_momenta.h). Of these a mesh
+// shows
 //
 //   the front    where all of them are at the time R,
 //   the sphere   those that are still shortest paths there: up to their cut time R; its border is
 //                sewn together along the cut locus, so that it is closed,
-//   the caustic  their first conjugate points, at times up to R,
+//   the caustic  their first conjugate points, or those of an order k, at times up to R,
 //   the cut      where they stop being the shortest, at times up to R.
 //
-// The cylinder is infinite. Far along its line extremals turn ever faster, and are conjugate ever
+// A line is infinite. Far along its line extremals turn ever faster, and are conjugate ever
 // earlier. So a sphere needs but a part of it, and of the others the mesh leaves the rest out, and
 // says so. The mesh is refined (front/surface.h) until edges and angles are as asked for.
 //
-// For scenes with two admissible directions. With three coordinates the mesh is the whole surface;
-// with more, momenta are fixed until a circle times a line is left, and the mesh is a section.
+// For scenes with two or three admissible directions, and any with two coordinates. With two or
+// three coordinates the mesh is the whole; with more, momenta are fixed until a surface is left,
+// and the mesh is a section.
 #pragma once
 
 #include <array>
@@ -34,9 +37,12 @@ struct FrontOptions {
   FrontKind what = FrontKind::kFront;
   double length = 1;                            // R
   std::vector<std::pair<int, double>> fixed{};  // momenta p_j(0)
-  std::vector<int> project{};  // the coordinates that are seen; empty: the first three
+  int order = 1;               // of a caustic: the k-th conjugate points, with multiplicity
+  bool cusps = false;          // cusp lines and umbilics of a caustic
+  std::vector<int> project{};  // the three coordinates that are seen; empty: the first ones
   // The longest edge and, in radians, the largest angle between neighbouring triangles, in
-  // coordinates that are 1 wide. Edges are not cut for an angle below an eighth of the longest.
+  // coordinates that are 1 wide; of curves a quarter of both. Edges are not cut for an angle below
+  // an eighth of the longest.
   double edge = 0.1;
   double angle = 0.35;
   int most = 100000;   // vertices
@@ -54,7 +60,15 @@ struct FrontVertex {
   std::vector<double> p0;  // of unit speed
   double cut_time = std::numeric_limits<double>::quiet_NaN();
   double conjugate_time = std::numeric_limits<double>::quiet_NaN();
-  const char* label = "";  // front, sphere, caustic or cut; on a seam: maxwell or conjugate
+  // front, sphere, caustic or cut; on a seam: maxwell or conjugate; of singular points of a
+  // caustic: cusp, hyperbolic umbilic or elliptic umbilic
+  const char* label = "";
+};
+
+// Where a caustic has a sharp edge, point after point.
+struct CuspEdge {
+  std::vector<FrontVertex> points;
+  bool closed = false;
 };
 
 struct FrontMesh {
@@ -63,8 +77,11 @@ struct FrontMesh {
   double length = 0;
   std::vector<FrontVertex> vertices;
   std::vector<std::array<int, 3>> triangles;
-  // Whether each edge is in two triangles, and then the Euler characteristic and, with three
-  // coordinates, the volume inside.
+  std::vector<std::array<int, 2>> segments;  // with two coordinates, instead of triangles
+  std::vector<CuspEdge> cusps;               // where they are asked for
+  std::vector<FrontVertex> umbilics;         // where two sheets of a caustic meet
+  // Whether each edge is in two triangles (each vertex in two segments), and then the Euler
+  // characteristic and, with two or three coordinates, the area or the volume inside.
   bool closed = false;
   int euler = 0;
   double volume = std::numeric_limits<double>::quiet_NaN();

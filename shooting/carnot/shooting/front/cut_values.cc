@@ -7,7 +7,7 @@
 
 #include "carnot/numerics/parallel.h"
 #include "carnot/shooting/cut_time.h"
-#include "carnot/shooting/rays/first_conjugate.h"
+#include "carnot/shooting/rays/conjugate_time.h"
 
 namespace carnot::internal {
 namespace {
@@ -151,8 +151,7 @@ bool CutValues::add_between(const std::vector<std::vector<double>>& momenta,
   std::vector<CutValue> made(momenta.size());
   parallel_for(static_cast<int>(momenta.size()), thread_count(options_.threads), [&](int i) {
     if (!go_on()) return;
-    const double conjugate =
-        first_conjugate_time(Ray(dynamics_, from_, momenta[i]), options_.horizon);
+    const double conjugate = conjugate_time(Ray(dynamics_, from_, momenta[i]), options_.horizon);
     made[i] = from_neighbours(momenta[i], conjugate, {parents[i].first, parents[i].second});
   });
   momenta_.insert(momenta_.end(), momenta.begin(), momenta.end());
@@ -167,28 +166,31 @@ void CutValues::add_partners(const std::vector<int>& of) {
     const std::vector<double> p = value.partner.p;
     value.partner.p = momenta_[i];
     for (double& x : value.partner.offset) x = -x;
-    value.conjugate = first_conjugate_time(Ray(dynamics_, from_, p), options_.horizon);
+    value.conjugate = conjugate_time(Ray(dynamics_, from_, p), options_.horizon);
     momenta_.push_back(p);
     values_.push_back(std::move(value));
   }
 }
 
 CutValue CutValues::beside(const std::vector<double>& p, int i) {
-  const double conjugate = first_conjugate_time(Ray(dynamics_, from_, p), options_.horizon);
+  const double conjugate = conjugate_time(Ray(dynamics_, from_, p), options_.horizon);
   return from_neighbours(p, conjugate, {i});
 }
 
 bool CutValues::add(const std::vector<std::vector<double>>& momenta,
                     const std::vector<std::vector<int>>& neighbours) {
-  constexpr int kSeeds = 12;
+  constexpr int kMostSeeds = 12;
+  constexpr int kFewestSeeds = 4;  // of a curve
+  constexpr int kShare = 16;
   const int count = static_cast<int>(momenta.size());
+  const int seeds = std::min(count, std::clamp(count / kShare, kFewestSeeds, kMostSeeds));
   momenta_ = momenta;
   values_.assign(momenta.size(), {});
   const int threads = thread_count(options_.threads);
   parallel_for(count, threads, [&](int i) {
-    if (go_on()) values_[i].conjugate = first_conjugate_time(ray(i), options_.horizon);
+    if (go_on()) values_[i].conjugate = conjugate_time(ray(i), options_.horizon);
   });
-  parallel_for(std::min(kSeeds, count), threads, [&](int k) {
+  parallel_for(seeds, threads, [&](int k) {
     // The golden section spreads them over both coordinates of the mesh.
     const double place = std::fmod(0.5 + 0.6180339887498949 * k, 1.0);
     const auto i = static_cast<int>(place * count);

@@ -2,27 +2,26 @@
 
 #include <algorithm>
 #include <limits>
-#include <numbers>
 
 #include "carnot/numerics/parallel.h"
-#include "carnot/shooting/rays/first_conjugate.h"
+#include "carnot/shooting/rays/conjugate_time.h"
 
 namespace carnot::internal {
 
 double conjugate_bound(const Dynamics& dynamics,
                        const std::vector<double>& from,
-                       const Cylinder& cylinder,
+                       const UnitMomenta& momenta,
                        double target,
                        int threads) {
   constexpr int kRays = 16;
   constexpr int kDoublings = 8;
   constexpr double kEnough = 0.02;
+  const std::vector<Eigen::Vector3d> directions = momenta.directions(kRays);
   const auto all = [&](double w) {
     std::vector<char> earlier(2 * kRays, 0);
     parallel_for(2 * kRays, thread_count(threads), [&](int k) {
-      const double phi = 2 * std::numbers::pi * (k / 2 + 0.37) / kRays;
-      const Ray ray(dynamics, from, cylinder.momentum(phi, k % 2 == 0 ? w : -w));
-      earlier[k] = first_conjugate_time(ray, 1.01 * target) <= target ? 1 : 0;
+      const Ray ray(dynamics, from, momenta.momentum({directions[k / 2], k % 2 == 0 ? w : -w}));
+      earlier[k] = conjugate_time(ray, 1.01 * target) <= target ? 1 : 0;
     });
     return std::all_of(earlier.begin(), earlier.end(), [](char x) { return x != 0; });
   };

@@ -1,10 +1,10 @@
-// How far along the line of the cylinder the momenta matter: beyond, extremals turn ever faster and
-// are conjugate ever earlier.
+// How far along their line momenta matter: beyond, extremals turn ever faster and are conjugate
+// ever earlier.
 #pragma once
 
 #include <vector>
 
-#include "carnot/shooting/front/cylinder.h"
+#include "carnot/shooting/front/unit_momenta.h"
 
 namespace carnot::internal {
 
@@ -13,7 +13,7 @@ namespace carnot::internal {
 // steps become too short for a mesh.
 double conjugate_bound(const Dynamics& dynamics,
                        const std::vector<double>& from,
-                       const Cylinder& cylinder,
+                       const UnitMomenta& momenta,
                        double target,
                        int threads);
 

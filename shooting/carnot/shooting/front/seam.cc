@@ -4,13 +4,13 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
+#include <numeric>
 #include <set>
 
 namespace carnot::internal {
 namespace {
 
-using Place = std::pair<double, double>;
+constexpr double kSameVertex = 1e-6;  // of c, and of w in units of its bound
 
 // How often each edge is in a triangle.
 std::map<Edge, int> edges_of(const Surface& surface) {
@@ -21,12 +21,12 @@ std::map<Edge, int> edges_of(const Surface& surface) {
   return edges;
 }
 
-// b - a with phi the short way round, w in units of `height`.
-Place difference(const Place& a, const Place& b, double height) {
-  return {std::remainder(b.first - a.first, 2 * std::numbers::pi), (b.second - a.second) / height};
+// b - a, w in units of `height`.
+Eigen::Vector4d difference(const UnitMomentum& a, const UnitMomentum& b, double height) {
+  Eigen::Vector4d apart;
+  apart << b.c - a.c, (b.w - a.w) / height;
+  return apart;
 }
-
-double length_of(const Place& a) { return std::hypot(a.first, a.second); }
 
 // A place on an edge of the border.
 struct Foot {
@@ -41,23 +41,20 @@ class Border {
     for (const auto& [edge, count] : edges_of(surface)) {
       if (count == 1) edges_.push_back(edge);
     }
-    for (const SurfaceVertex& v : surface.vertices) height_ = std::max(height_, std::abs(v.w));
+    for (const SurfaceVertex& v : surface.vertices)
+      height_ = std::max(height_, std::abs(v.place.w));
   }
 
-  [[nodiscard]] Place place(int i) const {
-    return {surface_.vertices[i].phi, surface_.vertices[i].w};
-  }
+  [[nodiscard]] const UnitMomentum& place(int i) const { return surface_.vertices[i].place; }
   [[nodiscard]] double height() const { return height_; }
-  [[nodiscard]] Foot foot(const Place& of) const {
+  [[nodiscard]] Foot foot(const UnitMomentum& of) const {
     Foot nearest;
     for (const Edge& edge : edges_) {
-      const Place along = difference(place(edge.first), place(edge.second), height_);
-      const Place to = difference(place(edge.first), of, height_);
-      const double square = along.first * along.first + along.second * along.second;
-      double part = square > 0 ? (along.first * to.first + along.second * to.second) / square : 0;
-      part = std::clamp(part, 0.0, 1.0);
-      const double distance =
-          length_of({to.first - part * along.first, to.second - part * along.second});
+      const Eigen::Vector4d along = difference(place(edge.first), place(edge.second), height_);
+      const Eigen::Vector4d to = difference(place(edge.first), of, height_);
+      const double square = along.squaredNorm();
+      const double part = square > 0 ? std::clamp(along.dot(to) / square, 0.0, 1.0) : 0;
+      const double distance = (to - part * along).norm();
       if (distance < nearest.distance) nearest = {edge, part, distance};
     }
     return nearest;
@@ -110,12 +107,39 @@ void unite(std::vector<int>& classes, int a, int b) {
   classes[std::max(x, y)] = std::min(x, y);
 }
 
+// Unites each end of a curve with the end that its partner is.
+void join_ends(const std::vector<BorderVertex>& border,
+               const Surface& surface,
+               std::vector<int>& classes) {
+  double height = 1e-300;
+  for (const BorderVertex& one : border) {
+    height = std::max(height, std::abs(surface.vertices[one.vertex].place.w));
+  }
+  for (const BorderVertex& one : border) {
+    if (one.at_conjugate) continue;
+    const auto far = [&](const BorderVertex& other) {
+      return difference(surface.vertices[other.vertex].place, one.partner, height).norm();
+    };
+    const auto nearest = std::min_element(
+        border.begin(), border.end(), [&](const BorderVertex& a, const BorderVertex& b) {
+          return far(a) < far(b);
+        });
+    if (far(*nearest) < kSameVertex) unite(classes, one.vertex, nearest->vertex);
+  }
+}
+
 }  // namespace
 
 std::vector<int> sew(const std::vector<BorderVertex>& border,
                      const std::function<void(int first, const std::vector<int>& of)>& make,
                      Surface& surface) {
-  constexpr double kSameVertex = 1e-6;  // radians, and w in units of its bound
+  if (!surface.segments.empty()) {
+    std::vector<int> classes(surface.vertices.size());
+    std::iota(classes.begin(), classes.end(), 0);
+    join_ends(border, surface, classes);
+    for (int& one : classes) one = root_of(classes, one);
+    return classes;
+  }
   const Border sides(surface);
   const int first = static_cast<int>(surface.vertices.size());
   std::map<Edge, std::map<double, int>> on_edge;
@@ -127,7 +151,7 @@ std::vector<int> sew(const std::vector<BorderVertex>& border,
     const Foot foot = sides.foot(one.partner);
     int same = -1;
     for (const int end : {foot.edge.first, foot.edge.second}) {
-      if (length_of(difference(sides.place(end), one.partner, sides.height())) < kSameVertex)
+      if (difference(sides.place(end), one.partner, sides.height()).norm() < kSameVertex)
         same = end;
     }
     if (same >= 0) {
@@ -140,7 +164,7 @@ std::vector<int> sew(const std::vector<BorderVertex>& border,
     while (chain.contains(part)) part = std::nextafter(part, 1.0);
     const int vertex = first + static_cast<int>(added.size());
     chain[part] = vertex;
-    added.push_back({one.partner.first, one.partner.second, {}});
+    added.push_back({one.partner, {}});
     of.push_back(one.vertex);
     pairs.emplace_back(one.vertex, vertex);
   }
@@ -148,7 +172,7 @@ std::vector<int> sew(const std::vector<BorderVertex>& border,
   split(on_edge, surface);
   make(first, of);
   std::vector<int> classes(surface.vertices.size());
-  for (std::size_t i = 0; i < classes.size(); ++i) classes[i] = static_cast<int>(i);
+  std::iota(classes.begin(), classes.end(), 0);
   for (const auto& [a, b] : pairs) unite(classes, a, b);
   // A family of conjugate momenta arrives at one point.
   const std::map<Edge, int> edges = edges_of(surface);
@@ -174,10 +198,24 @@ void merge(const std::vector<int>& classes, Surface& surface) {
     if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) kept.push_back(t);
   }
   surface.triangles = std::move(kept);
+  for (auto& segment : surface.segments) {
+    for (int& i : segment) i = classes[i];
+  }
+  std::erase_if(surface.segments, [](const auto& one) { return one[0] == one[1]; });
 }
 
 Topology topology_of(const Surface& surface) {
   Topology topology;
+  if (!surface.segments.empty()) {
+    std::map<int, int> ends;
+    for (const auto& segment : surface.segments) {
+      for (const int i : segment) ++ends[i];
+    }
+    topology.closed =
+        std::all_of(ends.begin(), ends.end(), [](const auto& end) { return end.second == 2; });
+    topology.euler = static_cast<int>(ends.size()) - static_cast<int>(surface.segments.size());
+    return topology;
+  }
   const std::map<Edge, int> edges = edges_of(surface);
   std::set<int> vertices;
   for (const auto& t : surface.triangles) vertices.insert(t.begin(), t.end());

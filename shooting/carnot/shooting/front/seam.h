@@ -2,7 +2,8 @@
 //
 // At a border vertex the cut time is the length of the sphere, and another momentum of the border,
 // its partner, has the same image. So each vertex gets its partner as a vertex, too, where there is
-// none, and both become one. Then edges of the border lie on edges: the surface is closed.
+// none, and both become one. Then edges of the border lie on edges: the surface is closed. The ends
+// of curves are sewn to each other.
 #pragma once
 
 #include <functional>
@@ -16,7 +17,7 @@ namespace carnot::internal {
 struct BorderVertex {
   int vertex = 0;
   bool at_conjugate = false;
-  std::pair<double, double> partner;  // (phi, w) of the partner
+  UnitMomentum partner;
 };
 
 // Adds partners to the surface, and gives the class of each vertex: the least vertex that it is one
@@ -26,14 +27,15 @@ std::vector<int> sew(const std::vector<BorderVertex>& border,
                      const std::function<void(int first, const std::vector<int>& of)>& make,
                      Surface& surface);
 
-// V - E + F, and whether each edge is in two triangles. All vertices count that a triangle has.
+// V - E + F, and whether each edge is in two triangles, of a curve each vertex in two segments. All
+// vertices count that a triangle has.
 struct Topology {
   bool closed = false;
   int euler = 0;
 };
 Topology topology_of(const Surface& surface);
 
-// Makes one of all vertices of a class; triangles that lose an edge are left out.
+// Makes one of all vertices of a class; triangles and segments that lose an edge are left out.
 void merge(const std::vector<int>& classes, Surface& surface);
 
 }  // namespace carnot::internal

@@ -45,7 +45,33 @@ double bend(const Point& a, const Point& b, const Point& c, const Point& d) {
   return std::numbers::pi - std::acos(std::clamp(cd / std::sqrt(cc * dd), -1.0, 1.0));
 }
 
-// The edges that ask to be cut.
+// The segments that ask to be cut.
+std::set<Edge> segments_to_cut(const Refinement& how, const Surface& surface) {
+  std::vector<std::vector<int>> others(surface.vertices.size());
+  std::set<Edge> cut;
+  const auto image = [&](int i) -> const Point& { return surface.vertices[i].image; };
+  for (const auto& [a, b] : surface.segments) {
+    others[a].push_back(b);
+    others[b].push_back(a);
+    if (distance(image(a), image(b)) > how.longest) cut.insert(edge_of(a, b));
+  }
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    if (others[i].size() != 2) continue;
+    const int at = static_cast<int>(i);
+    const double before = distance(image(at), image(others[i][0]));
+    const double after = distance(image(at), image(others[i][1]));
+    const double across = distance(image(others[i][0]), image(others[i][1]));
+    const double cosine =
+        (before * before + after * after - across * across) / (2 * before * after);
+    const double turn = std::numbers::pi - std::acos(std::clamp(cosine, -1.0, 1.0));
+    if (!(turn > how.sharpest)) continue;
+    if (before > how.shortest) cut.insert(edge_of(at, others[i][0]));
+    if (after > how.shortest) cut.insert(edge_of(at, others[i][1]));
+  }
+  return cut;
+}
+
+// The edges of triangles that ask to be cut.
 std::set<Edge> edges_to_cut(const Refinement& how, const Surface& surface) {
   std::map<Edge, int> opposite;  // of the first triangle that has the edge
   std::set<Edge> cut;
@@ -133,51 +159,57 @@ bool cut_edges(const std::set<Edge>& cut, const Refinement& how, Surface& surfac
     divide(t, middles, triangles);
   }
   surface.triangles = std::move(triangles);
+  std::vector<std::array<int, 2>> segments;
+  for (const auto& [a, b] : surface.segments) {
+    const auto found = middle.find(edge_of(a, b));
+    if (found == middle.end()) {
+      segments.push_back({a, b});
+    } else {
+      segments.push_back({a, found->second});
+      segments.push_back({found->second, b});
+    }
+  }
+  surface.segments = std::move(segments);
   return how.make(first, parents);
 }
 
 }  // namespace
 
-SurfaceVertex Surface::between(const Between& place) const {
-  const SurfaceVertex& a = vertices[place.a];
-  const SurfaceVertex& b = vertices[place.b];
-  SurfaceVertex vertex;
-  vertex.phi = a.phi + place.part * std::remainder(b.phi - a.phi, 2 * std::numbers::pi);
-  vertex.w = a.w + place.part * (b.w - a.w);
-  return vertex;
+SurfaceVertex Surface::between(const Between& part) const {
+  return {internal::between(vertices[part.a].place, vertices[part.b].place, part.part), {}};
 }
 
-Surface cylinder_grid(int around, int along, double bound) {
-  Surface surface;
-  for (int i = 0; i < along; ++i) {
-    for (int j = 0; j < around; ++j) {
-      const double phi = 2 * std::numbers::pi * j / around;
-      const double w = bound * (2.0 * i / (along - 1) - 1);
-      surface.vertices.push_back({phi, w, {}});
-    }
+std::vector<std::vector<int>> Surface::neighbours() const {
+  std::vector<std::set<int>> sets(vertices.size());
+  for (const auto& t : triangles) {
+    for (const int i : t) sets[i].insert(t.begin(), t.end());
   }
-  for (int i = 0; i + 1 < along; ++i) {
-    for (int j = 0; j < around; ++j) {
-      const int a = i * around + j;
-      const int b = i * around + (j + 1) % around;
-      surface.triangles.push_back({a, b, b + around});
-      surface.triangles.push_back({a, b + around, a + around});
-    }
+  for (const auto& [a, b] : segments) {
+    sets[a].insert(b);
+    sets[b].insert(a);
   }
-  return surface;
+  std::vector<std::vector<int>> lists;
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    sets[i].erase(static_cast<int>(i));
+    lists.emplace_back(sets[i].begin(), sets[i].end());
+  }
+  return lists;
 }
 
 long refine(const Refinement& how, Surface& surface) {
   constexpr int kMostRounds = 24;
+  const auto wishes = [&] {
+    return surface.segments.empty() ? edges_to_cut(how, surface) : segments_to_cut(how, surface);
+  };
   for (int round = 0; round < kMostRounds; ++round) {
-    const std::set<Edge> cut = edges_to_cut(how, surface);
+    const std::set<Edge> cut = wishes();
     if (cut.empty()) return 0;
     if (static_cast<long>(surface.vertices.size() + cut.size()) > how.most) {
       return static_cast<long>(cut.size());
     }
     if (!cut_edges(cut, how, surface)) return -1;
   }
-  return static_cast<long>(edges_to_cut(how, surface).size());
+  return static_cast<long>(wishes().size());
 }
 
 void clip(const std::vector<bool>& inside,
@@ -187,15 +219,15 @@ void clip(const std::vector<bool>& inside,
   std::map<Edge, int> border;
   std::vector<Between> places;
   const int first = static_cast<int>(surface.vertices.size());
+  const auto look_at = [&](int a, int b) {
+    if (inside[a] == inside[b] || border.contains(edge_of(a, b))) return;
+    border[edge_of(a, b)] = first + static_cast<int>(places.size());
+    places.push_back({inside[a] ? a : b, inside[a] ? b : a, 0.5});
+  };
   for (const auto& t : surface.triangles) {
-    for (int k = 0; k < 3; ++k) {
-      const int a = t[k];
-      const int b = t[(k + 1) % 3];
-      if (inside[a] == inside[b] || border.contains(edge_of(a, b))) continue;
-      border[edge_of(a, b)] = first + static_cast<int>(places.size());
-      places.push_back({inside[a] ? a : b, inside[a] ? b : a, 0.5});
-    }
+    for (int k = 0; k < 3; ++k) look_at(t[k], t[(k + 1) % 3]);
   }
+  for (const auto& [a, b] : surface.segments) look_at(a, b);
   locate(places);
   for (const Between& place : places) surface.vertices.push_back(surface.between(place));
   std::vector<std::array<int, 3>> kept;
@@ -218,6 +250,14 @@ void clip(const std::vector<bool>& inside,
     }
   }
   surface.triangles = std::move(kept);
+  std::vector<std::array<int, 2>> pieces;
+  for (const auto& [a, b] : surface.segments) {
+    if (inside[a] && inside[b]) pieces.push_back({a, b});
+    if (inside[a] == inside[b]) continue;
+    const int middle = border.at(edge_of(a, b));
+    pieces.push_back(inside[a] ? std::array{a, middle} : std::array{middle, b});
+  }
+  surface.segments = std::move(pieces);
   (void)make(first, places);
 }
 
@@ -226,6 +266,7 @@ void drop_unused(Surface& surface, std::vector<int>& kept) {
   for (const auto& t : surface.triangles) {
     for (const int i : t) number[i] = 0;
   }
+  for (const auto& [a, b] : surface.segments) number[a] = number[b] = 0;
   kept.clear();
   std::vector<SurfaceVertex> vertices;
   for (std::size_t i = 0; i < number.size(); ++i) {
@@ -236,6 +277,9 @@ void drop_unused(Surface& surface, std::vector<int>& kept) {
   }
   for (auto& t : surface.triangles) {
     for (int& i : t) i = number[i];
+  }
+  for (auto& segment : surface.segments) {
+    for (int& i : segment) i = number[i];
   }
   surface.vertices = std::move(vertices);
 }

@@ -1,9 +1,9 @@
-// A triangulated piece of the cylinder of momenta, and where it goes.
+// A piece of the momenta of unit speed, of triangles or a curve of segments, and where it goes.
 //
-// Every vertex is a momentum (phi, w) with an image in space. Edges whose images are too long, or
-// at which the image is bent too sharply, get a vertex in their middle, and a triangle is cut in
-// two, three or four by its edges that have one. So the mesh stays conforming, and since everything
-// follows from the mesh before, it is the same for any number of threads.
+// Every vertex is the place of a momentum, with an image in space. Edges whose images are too long,
+// or at which the image is bent too sharply, get a vertex in their middle, and a triangle is cut in
+// two, three or four by its edges that have one, a segment in two. So the mesh stays conforming,
+// and since everything follows from the mesh before, it is the same for any number of threads.
 #pragma once
 
 #include <array>
@@ -11,12 +11,13 @@
 #include <utility>
 #include <vector>
 
+#include "carnot/shooting/front/unit_momenta.h"
+
 namespace carnot::internal {
 
 struct SurfaceVertex {
-  double phi = 0;  // not reduced to a turn
-  double w = 0;
-  std::vector<double> image;  // a place; NaN where there is none
+  UnitMomentum place;
+  std::vector<double> image;  // NaN where there is none
 };
 
 // Parents of a new vertex, and its place between them.
@@ -33,19 +34,23 @@ inline Edge edge_of(int a, int b) { return a < b ? Edge{a, b} : Edge{b, a}; }
 struct Surface {
   std::vector<SurfaceVertex> vertices;
   std::vector<std::array<int, 3>> triangles;
+  std::vector<std::array<int, 2>> segments;  // instead of triangles
 
-  // A point on the edge: parameters only, with phi the short way round.
-  [[nodiscard]] SurfaceVertex between(const Between& place) const;
+  // A point on the edge, without an image.
+  [[nodiscard]] SurfaceVertex between(const Between& part) const;
+  // Which vertices share a triangle or a segment with each.
+  [[nodiscard]] std::vector<std::vector<int>> neighbours() const;
+  [[nodiscard]] bool empty() const { return triangles.empty() && segments.empty(); }
 };
 
-// phi x w with as many vertices, all round; w from -bound to bound.
-Surface cylinder_grid(int around, int along, double bound);
+// All momenta of unit speed, w from -bound to bound where there is a line.
+Surface first_surface(const UnitMomenta& momenta, double bound);
 
 // What refines a surface. `make` fills the images of new vertices, number `first` and those after
 // it, whose parents are given; false to stop.
 struct Refinement {
   double longest = 0;   // edge, in the units of images
-  double sharpest = 0;  // angle between the normals of neighbours, in radians
+  double sharpest = 0;  // angle between neighbours, in radians
   double shortest = 0;  // edges are not cut for an angle below this
   int most = 0;         // vertices
   std::function<bool(int first, const std::vector<Between>& parents)> make;

@@ -70,7 +70,8 @@ double validated_speed(const Dynamics& dynamics,
     check(std::isfinite(from[j]) && std::isfinite(p[j]), "from and p0 must be finite");
   }
   check(end_status(dynamics, from) == RateStatus::kOk, "the constraints are dependent at from");
-  check(dynamics.autonomous && dynamics.has_transcription() && is_quadratic(dynamics, from, p),
+  check(dynamics.autonomous && (dynamics.has_transcription() || dynamics.on_leaves) &&
+            is_quadratic(dynamics, from, p),
         "fronts and cut times are of scenes with velocity constraints or driftless controls, and "
         "without a potential");
   const double speed = speed_of(dynamics, from, p);

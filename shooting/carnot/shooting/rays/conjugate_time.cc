@@ -1,0 +1,164 @@
+#include "carnot/shooting/rays/conjugate_time.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+
+#include "carnot/shooting/linear/dense.h"
+#include "carnot/shooting/linear/illinois.h"
+
+namespace carnot::internal {
+namespace {
+
+using RowMajor =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMostSmall, kMostSmall>;
+
+// Of |P| |X|: eigenvalues that are nearer to zero are not negative. On an abnormal extremal some of
+// them stay at zero, but for the round-off of the flow.
+constexpr double kRounding = 1e-11;
+constexpr int kHalvings = 24;
+
+// A phase point, and a basis of the plane there.
+struct Node {
+  double t = 0;
+  std::vector<double> z;
+  SmallMatrix x;
+  SmallMatrix p;
+};
+
+// Eigenvalues of F at the end of a step, ascending, and how many count as negative.
+struct Form {
+  SmallVector values;
+  int negative = 0;
+};
+
+Form form_of(const SmallMatrix& f, double size) {
+  Form form;
+  form.values = symmetric_eigen(0.5 * (f + f.transpose())).values;
+  form.negative = static_cast<int>((form.values.array() < -kRounding * size).count());
+  return form;
+}
+
+double determinant(const SmallMatrix& a) {
+  const Determinant det = determinant_of(a);
+  return det.sign * std::exp(det.log_size);
+}
+
+// Whether A has been regular throughout a step, with A = I at first. Where two eigenvalues have
+// become negative at once det A is positive again, but det (I + A) / 2 is less than 1/4.
+bool stayed_regular(const SmallMatrix& a) {
+  constexpr double kRegular = 0.1;
+  const SmallMatrix half = 0.5 * (a + SmallMatrix::Identity(a.rows(), a.cols()));
+  return determinant(a) > kRegular && determinant(half) > 0.25;
+}
+
+enum class Advance { kDone, kTooLong, kFailed };
+
+// One step of the method, and F over it.
+Advance advance(const Dynamics& dynamics, const Node& from, double t, Node& to, Form& form) {
+  const int n = dynamics.dof;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> m(2 * n, 2 * n);
+  to.t = t;
+  to.z = from.z;
+  const std::span<double> rows(m.data(), static_cast<std::size_t>(m.size()));
+  const StepPlan plan = StepPlan::equal(from.t, t - from.t, 1);
+  if (!dynamics.tangent_flow(plan, to.z, rows).completed()) return Advance::kFailed;
+  const SmallMatrix a = m.topLeftCorner(n, n);
+  to.x = a.lazyProduct(from.x) + m.topRightCorner(n, n).lazyProduct(from.p);
+  to.p =
+      m.bottomLeftCorner(n, n).lazyProduct(from.x) + m.bottomRightCorner(n, n).lazyProduct(from.p);
+  if (!to.x.allFinite() || !to.p.allFinite()) return Advance::kFailed;
+  if (!stayed_regular(a)) return Advance::kTooLong;
+  const SmallMatrix back = small_lu_inverse(a).lazyProduct(to.x);
+  form = form_of(from.p.transpose().lazyProduct(back), from.p.norm() * back.norm());
+  return Advance::kDone;
+}
+
+// The momenta that move something, orthonormal: all but those along Dh of holonomic constraints.
+// For these F stays at zero.
+SmallMatrix moving_momenta(const Dynamics& dynamics, const std::vector<double>& z) {
+  const int n = dynamics.dof;
+  if (dynamics.forced == 0) return SmallMatrix::Identity(n, n);
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> projector(2 * n, 2 * n);
+  const std::span<double> rows(projector.data(), static_cast<std::size_t>(projector.size()));
+  if (!dynamics.tangent_projector(0, z, rows)) return SmallMatrix::Identity(n, n);
+  return right_singular(projector.leftCols(n)).vectors.leftCols(n - dynamics.forced);
+}
+
+class Count {
+ public:
+  Count(const Ray& ray, int order) : dynamics_(ray.dynamics()), left_(order) {
+    node_.z = ray.start();
+    node_.p = moving_momenta(dynamics_, node_.z);
+    node_.x = SmallMatrix::Zero(dynamics_.dof, node_.p.cols());
+  }
+
+  // Goes on to t, or to the time that is looked for: then that is `found`. False where it fails.
+  bool go_to(double t, int halvings = kHalvings) {
+    Node next;
+    Form form;
+    const Advance result = advance(dynamics_, node_, t, next, form);
+    if (result == Advance::kFailed) return false;
+    if (result == Advance::kTooLong) {
+      if (halvings == 0) return false;
+      if (!go_to(0.5 * (node_.t + t), halvings - 1)) return false;
+      return found || go_to(t, halvings - 1);
+    }
+    const Form before =
+        form_of(node_.p.transpose().lazyProduct(node_.x), node_.p.norm() * node_.x.norm());
+    const int passed = std::max(0, before.negative - form.negative);
+    if (passed >= left_) {
+      found = locate(before, form, t);
+      return true;
+    }
+    left_ -= passed;
+    node_ = std::move(next);
+    return true;
+  }
+
+  std::optional<double> found;
+
+ private:
+  // The zero of the eigenvalue that has `left_` - 1 negative ones above it, before t.
+  [[nodiscard]] double locate(const Form& before, const Form& after, double t) const {
+    constexpr double kEnough = 1e-14;  // relative
+    const int which = before.negative - left_;
+    Node middle;
+    Form form;
+    const auto value_at = [&](double at) {
+      return advance(dynamics_, node_, at, middle, form) == Advance::kDone
+                 ? std::optional(form.values[which])
+                 : std::nullopt;
+    };
+    return illinois(node_.t, before.values[which], t, after.values[which], kEnough * t, value_at);
+  }
+
+  const Dynamics& dynamics_;
+  int left_;
+  Node node_;
+};
+
+}  // namespace
+
+double conjugate_time(const Ray& ray, double horizon, int order) {
+  // How many steps are enough is found for stretches that double: most rays are conjugate early.
+  constexpr double kFirst = 0.125;
+  Count count(ray, order);
+  double t = 0;
+  for (double part = kFirst; part <= 1; part *= 2) {
+    const double end = part * horizon;
+    const double h = end / static_cast<double>(ray.enough_steps(end));
+    const long steps = std::max(1L, std::lround((end - t) / h));
+    const double begin = t;
+    for (long i = 1; i <= steps; ++i) {
+      t = begin + (end - begin) * static_cast<double>(i) / static_cast<double>(steps);
+      if (!count.go_to(t)) return std::numeric_limits<double>::quiet_NaN();
+      if (count.found) return *count.found;
+    }
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+}  // namespace carnot::internal
