@@ -67,6 +67,10 @@ py::dict field(const ModelPointer& model,
   arrays["finished"] = answer.finished;
   arrays["searches"] = answer.searches;
   arrays["flows"] = answer.flows;
+  arrays["settled"] = answer.settled;
+  arrays["unkept"] = answer.unkept;
+  arrays["triangles"] = answer.triangles;
+  arrays["violations"] = answer.violations;
   arrays["checked"] = answer.checked;
   arrays["lower"] = answer.lower;
   arrays["bound"] = answer.bound;

@@ -44,6 +44,10 @@ class Field(Value):
     finished: bool
     searches: int
     flows: int
+    settled: bool  #: whether the sweeps went on until nothing changed
+    unkept: int  #: points that a neighbour promised less than is known of them
+    triangles: int  #: triangles between neighbours that were looked at,
+    violations: int  #: and those in which one path is longer than the other two
     checked: int  #: points that were searched again,
     lower: int  #: and where that found less
     bound: float  #: of the share of such points, with 95 per cent confidence
@@ -99,6 +103,10 @@ def field_of(
         finished=found["finished"],
         searches=found["searches"],
         flows=found["flows"],
+        settled=found["settled"],
+        unkept=found["unkept"],
+        triangles=found["triangles"],
+        violations=found["violations"],
         checked=found["checked"],
         lower=found["lower"],
         bound=found["bound"],

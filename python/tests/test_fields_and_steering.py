@@ -19,6 +19,9 @@ def field(unicycle):
 def test_field_holds_what_searches_find(field, unicycle):
     assert field.finished
     assert field.lower == 0
+    assert field.settled
+    assert field.triangles > 0
+    assert field.violations == 0
     assert field.action.shape == (9, 9, 8)
     assert field.p0.shape == (9, 9, 8, 3)
     assert (field.reason == "none").all()

@@ -15,6 +15,7 @@
 
 #include "carnot/numerics/parallel.h"
 #include "carnot/shooting/field/cold_searches.h"
+#include "carnot/shooting/field/field_sample.h"
 #include "carnot/shooting/field/field_sweep.h"
 #include "carnot/shooting/field/triangles.h"
 #include "carnot/shooting/problem/natural_scales.h"
@@ -95,25 +96,6 @@ BoundaryValueProblem to_a_regular_point(BoundaryValueProblem problem, const Fiel
   }
   problem.to = grid.target(0);
   return problem;
-}
-
-// With at most `found` of `tried` trials a success, the share of successes is less than this with
-// 95 per cent confidence (Clopper and Pearson, Biometrika 26, 1934).
-double upper_share(long found, long tried) {
-  constexpr double kDoubt = 0.05;
-  double low = 0;
-  double high = 1;
-  for (int i = 0; i < 60 && found < tried; ++i) {
-    const double share = 0.5 * (low + high);
-    double term = std::pow(1 - share, static_cast<double>(tried));
-    double sum = term;
-    for (long k = 0; k < found; ++k) {
-      term *= static_cast<double>(tried - k) / static_cast<double>(k + 1) * share / (1 - share);
-      sum += term;
-    }
-    (sum > kDoubt ? low : high) = share;
-  }
-  return high;
 }
 
 class FieldSolver {
@@ -228,34 +210,13 @@ class FieldSolver {
     return spread != Spread::kStopped && !stopped_;
   }
 
-  // Points spread evenly: additive recurrences with powers of the root of x^(d + 1) = x + 1.
-  [[nodiscard]] std::vector<long> spread_points(long count) const {
-    const auto d = static_cast<double>(grid_.axes.size());
-    double root = 1.5;
-    for (int i = 0; i < 50; ++i) root = std::pow(1 + root, 1 / (d + 1));
-    std::set<long> points;
-    for (long k = 0; k < count; ++k) {
-      long index = 0;
-      double power = 1;
-      for (const FieldGrid::Axis& axis : grid_.axes) {
-        power /= root;
-        const double x = 0.5 + static_cast<double>(k) * power;
-        const auto size = static_cast<double>(axis.values.size());
-        const auto at = static_cast<long>((x - std::floor(x)) * size);
-        index = index * static_cast<long>(axis.values.size()) + at;
-      }
-      points.insert(index);
-    }
-    return {points.begin(), points.end()};
-  }
-
   bool spread_from_seeds() {
     constexpr long kPointsPerSeed = 2000;
     constexpr long kFewest = 8;
     constexpr long kMost = 64;
     const long size = grid_.size();
-    const std::vector<long> seeds =
-        spread_points(std::min(size, std::clamp(size / kPointsPerSeed, kFewest, kMost)));
+    const std::vector<long> seeds = evenly_spread_points(
+        grid_, std::min(size, std::clamp(size / kPointsPerSeed, kFewest, kMost)));
     const auto found = search(seeds, options_.search.seed);
     searches_ += static_cast<long>(seeds.size());
     if (stopped_) return false;

@@ -13,6 +13,7 @@
 #include "carnot/numerics/parallel.h"
 #include "carnot/shooting/front/caustic_lines.h"
 #include "carnot/shooting/front/cut_values.h"
+#include "carnot/shooting/front/enclosed.h"
 #include "carnot/shooting/front/momentum_bound.h"
 #include "carnot/shooting/front/ray_ends.h"
 #include "carnot/shooting/front/seam.h"
@@ -352,7 +353,10 @@ class FrontMaker {
     const Topology topology = topology_of(whole);
     mesh.closed = topology.closed;
     mesh.euler = topology.euler;
-    if (mesh.closed) mesh.volume = n_ == 2 ? area() : volume();
+    if (mesh.closed) {
+      mesh.volume = n_ == 2 ? enclosed_area(dynamics_, surface_, ends_, momenta_.has_line())
+                            : enclosed_volume(dynamics_, surface_, ends_);
+    }
     // In one place only what has the same image: angles may have turned once more.
     constexpr double kSamePlace = 1e-7;
     std::vector<int> same = classes;
@@ -364,37 +368,6 @@ class FrontMaker {
       }
     }
     merge(same, surface_);
-  }
-
-  // The flux of (x, 0, 0) through the surface, where x is no angle: it does not matter that images
-  // may be periods of angles apart.
-  [[nodiscard]] double volume() const {
-    int x = 0;
-    while (x < 2 && dynamics_.info.configuration[x].period > 0) ++x;
-    const auto at = [&](int i, int k) {
-      return ends_[static_cast<std::size_t>(i) * n_ + (x + k) % 3];
-    };
-    double sum = 0;
-    for (const auto& [a, b, c] : surface_.triangles) {
-      const double area = (at(b, 1) - at(a, 1)) * (at(c, 2) - at(a, 2)) -
-                          (at(b, 2) - at(a, 2)) * (at(c, 1) - at(a, 1));
-      sum += area * (at(a, 0) + at(b, 0) + at(c, 0)) / 6;
-    }
-    return std::abs(sum);
-  }
-
-  // The flux of (x, 0) through the curve, where x is no angle. The inside is on the same side of
-  // all segments or, of those with the opposite c of two lines, on the other.
-  [[nodiscard]] double area() const {
-    const int x = dynamics_.info.configuration[0].period > 0 ? 1 : 0;
-    const bool lines = momenta_.has_line();
-    double sum = 0;
-    for (const auto& [a, b] : surface_.segments) {
-      const auto at = [&](int i, int k) { return ends_[static_cast<std::size_t>(i) * 2 + k]; };
-      const double flux = 0.5 * (at(a, x) + at(b, x)) * (at(b, 1 - x) - at(a, 1 - x));
-      sum += lines && surface_.vertices[a].place.c[0] < 0 ? -flux : flux;
-    }
-    return std::abs(sum);
   }
 
   void deliver(FrontMesh& mesh) {
