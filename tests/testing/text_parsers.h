@@ -26,7 +26,9 @@ inline void read_journal(std::string_view bytes) {
   const std::string path = "/tmp/carnot-journal-" + std::to_string(getpid());
   std::ofstream(path, std::ios::binary) << bytes;
   try {
-    apps::Journal journal(path, {{"scene", "vehicle"}}, 4, true);
+    apps::JournalCall call;
+    call.words = {{"scene", "vehicle"}};
+    apps::Journal journal(path, call, true);
     for (long chunk = 0; chunk < 4; ++chunk) {
       if (journal.holds(chunk)) (void)journal.read(chunk);
     }
