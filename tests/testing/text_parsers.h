@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
 #include <string>
@@ -23,7 +24,8 @@ inline void expect_finite(double x) {
 
 // The bytes as the journal of a run of four chunks.
 inline void read_journal(std::string_view bytes) {
-  const std::string path = "/tmp/carnot-journal-" + std::to_string(getpid());
+  const std::string path =
+      std::filesystem::temp_directory_path() / ("carnot-journal-" + std::to_string(getpid()));
   std::ofstream(path, std::ios::binary) << bytes;
   try {
     apps::JournalCall call;
