@@ -12,8 +12,7 @@
 namespace carnot::internal {
 namespace {
 
-using RowMajor =
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMostSmall, kMostSmall>;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 // Of |P| |X|: eigenvalues that are nearer to zero are not negative. On an abnormal extremal some of
 // them stay at zero, but for the round-off of the flow.
@@ -64,7 +63,7 @@ enum class Advance { kDone, kTooLong, kFailed };
 // One step of the method, and F over it.
 Advance advance(const Dynamics& dynamics, const Node& from, double t, Node& to, Form& form) {
   const int n = dynamics.dof;
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> m(2 * n, 2 * n);
+  RowMajor m(2 * n, 2 * n);
   to.t = t;
   to.z = from.z;
   const std::span<double> rows(m.data(), static_cast<std::size_t>(m.size()));
@@ -86,7 +85,7 @@ Advance advance(const Dynamics& dynamics, const Node& from, double t, Node& to, 
 SmallMatrix moving_momenta(const Dynamics& dynamics, const std::vector<double>& z) {
   const int n = dynamics.dof;
   if (dynamics.forced == 0) return SmallMatrix::Identity(n, n);
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> projector(2 * n, 2 * n);
+  RowMajor projector(2 * n, 2 * n);
   const std::span<double> rows(projector.data(), static_cast<std::size_t>(projector.size()));
   if (!dynamics.tangent_projector(0, z, rows)) return SmallMatrix::Identity(n, n);
   return right_singular(projector.leftCols(n)).vectors.leftCols(n - dynamics.forced);
