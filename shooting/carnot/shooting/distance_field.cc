@@ -233,13 +233,18 @@ DistanceField DistanceField::read(const std::string& path) {
   require(last && checksum_of(head + bytes) == checksum, "it is damaged");
   const auto n = static_cast<int>(field.from_.size());
   require(n > 0 && n <= kMostCoordinates && std::ssize(field.axes_) == n, "an axis is missing");
-  for (const Axis& axis : field.axes_) {
-    require(axis.coordinate >= 0 && axis.coordinate < n, "an axis is of no coordinate");
-  }
-  field.set_strides();
   field.distance_ = values_of(bytes);
-  require(std::ssize(field.distance_) == field.axes_[0].stride * field.axes_[0].count,
-          "its size is another one");
+  std::vector<bool> seen(n);
+  long left = std::ssize(field.distance_);  // points, over the axes so far
+  for (const Axis& axis : field.axes_) {
+    require(axis.coordinate >= 0 && axis.coordinate < n && !seen[axis.coordinate],
+            "an axis is of no coordinate, or of one that has an axis");
+    seen[axis.coordinate] = true;
+    require(left % axis.count == 0, "its size is another one");
+    left /= axis.count;
+  }
+  require(left == 1, "its size is another one");
+  field.set_strides();
   field.find_deficits();
   return field;
 }
