@@ -16,6 +16,7 @@ namespace carnot::apps {
 namespace {
 
 constexpr long kMostProblems = 1000000000;
+constexpr long kMostOnAxis = 10000000;  // 80 MB
 
 std::string trimmed(const std::string& text) {
   const std::size_t first = text.find_first_not_of(" \t\n");
@@ -61,7 +62,8 @@ Axis parse_axis(const std::string& grid, const std::string& text, const SceneInf
   if (parts.size() != 3) refuse("--grid", grid, "not START:STOP:COUNT", kAccepted);
   const double start = parse_real("--grid", trimmed(parts[0]));
   const double stop = parse_real("--grid", trimmed(parts[1]));
-  const long count = parse_integer("--grid", trimmed(parts[2]), 1, kMostProblems);
+  if (!std::isfinite(stop - start)) refuse("--grid", grid, "too wide an axis", kAccepted);
+  const long count = parse_integer("--grid", trimmed(parts[2]), 1, kMostOnAxis);
   // Around a circle the last point would be the first one again.
   const bool around =
       coordinate.period > 0 &&
@@ -94,6 +96,9 @@ class GridList : public ProblemList {
       named[axis.coordinate] = true;
       ends_.free_to[axis.coordinate] = false;
       size *= static_cast<double>(axis.values.size());
+      if (size > static_cast<double>(kMostProblems)) {
+        refuse("--grid", options.grid, "too many points", fmt::format("at most {}", kMostProblems));
+      }
     }
     const auto missing = std::find(named.begin(), named.end(), false);
     if (missing != named.end()) {
@@ -102,9 +107,6 @@ class GridList : public ProblemList {
              options.grid,
              fmt::format("nothing says what {} is at the target", coordinate.name),
              "an axis for it, or --to");
-    }
-    if (size > static_cast<double>(kMostProblems)) {
-      refuse("--grid", options.grid, "too many points", fmt::format("at most {}", kMostProblems));
     }
     size_ = static_cast<long>(size);
   }

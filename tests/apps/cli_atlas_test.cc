@@ -365,6 +365,9 @@ TEST_F(AtlasTest, RefusesBadInput) {
   refused({"--from", "0,0,0", "--to", "0,0,0", "--grid", "z=0:1:2"}, "no coordinate 'z'");
   refused({"--from", "0,0,0", "--to", "0,0,0", "--grid", "x=0:1"}, "START:STOP:COUNT");
   refused({"--from", "0,0,0", "--to", "0,0,0", "--grid", "x=0:1:2,x=0:1:2"}, "given twice");
+  refused({"--from", "0,0,0", "--to", "0,0,0", "--grid", "x=-1e308:1e308:3"}, "too wide");
+  refused({"--from", "0,0,0", "--to", "0,0,0", "--grid", "x=0:1:100000001"}, "10000000");
+  refused({"--from", "0,0,0", "--to", "0,0,0", "--grid", "x=0:1:40000,y=0:1:40000"}, "too many");
   refused({"--to", "0,0,0", "--grid", "x=0:1:2"}, "--from '': is missing");
   refused({"--problems", "none.csv"}, "No such file");
   refused({"--random", "3", "--field"}, "--grid");

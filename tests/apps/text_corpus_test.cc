@@ -1,4 +1,5 @@
-// What the fuzzer has found worth keeping of texts and journals, read again (fuzz/text_fuzz.cc).
+// What the fuzzer has found worth keeping of texts, problems and journals, read again
+// (fuzz/text_fuzz.cc).
 #include <gtest/gtest.h>
 
 #include <filesystem>

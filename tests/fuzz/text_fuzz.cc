@@ -1,5 +1,6 @@
-// Any bytes as the texts of options (numbers, angles, vectors, ends, seeds) and as the journal of
-// an atlas; the first byte says which. Built and run as scene_fuzz.cc is:
+// Any bytes as the texts of options (numbers, angles, vectors, ends, seeds, limits, discs, grids),
+// as a file of problems and as the journal of an atlas; the first byte says which. Built and run as
+// scene_fuzz.cc is:
 //
 //   build/fuzz/tests/text_fuzz -max_total_time=600 -max_len=300 NEW tests/fuzz/text_corpus
 //

@@ -14,6 +14,9 @@
 #include <string_view>
 
 #include "atlas/journal.h"
+#include "atlas/problem_list.h"
+#include "catalogue/limit_choice.h"
+#include "catalogue/scene_choice.h"
 #include "text/numbers.h"
 
 namespace carnot::test {
@@ -41,6 +44,53 @@ inline void read_journal(std::string_view bytes) {
     throw;
   }
   std::remove(path.c_str());
+}
+
+// The first and the last problem of a list are numbers.
+inline void expect_problems(const apps::ListOptions& options) {
+  static const apps::Run run = [] {
+    apps::RunOptions of_unicycle;
+    of_unicycle.scene = "unicycle";
+    return apps::check(of_unicycle);
+  }();
+  const auto list = apps::make_problem_list(options, run, {});
+  for (const long i : {0L, list->size() - 1}) {
+    const apps::AtlasProblem problem = list->at(i);
+    for (const double x : problem.ends.from) expect_finite(x);
+    for (const double x : problem.ends.to) expect_finite(x);
+    expect_finite(problem.ends.time);
+  }
+  (void)list->identity();
+}
+
+inline void read_problem_file(std::string_view bytes) {
+  apps::ListOptions options;
+  options.problems =
+      std::filesystem::temp_directory_path() / ("carnot-problems-" + std::to_string(getpid()));
+  std::ofstream(options.problems, std::ios::binary) << bytes;
+  try {
+    expect_problems(options);
+  } catch (...) {
+    std::remove(options.problems.c_str());
+    throw;
+  }
+  std::remove(options.problems.c_str());
+}
+
+// A limit of the vehicle.
+inline void read_limit(const std::string& text) {
+  const apps::SceneEntry& vehicle = apps::find_scene("vehicle");
+  if (apps::choose_limits(vehicle, apps::parse_parameters(vehicle, {}), {{text}, {}}).empty()) {
+    std::abort();
+  }
+}
+
+inline void read_grid(std::string_view text) {
+  apps::ListOptions options;
+  options.from = "0,0,0";
+  options.to = "0,0,0";
+  options.grid = text;
+  expect_problems(options);
 }
 
 // True where the parser that the first byte stands for accepts the others.
@@ -76,6 +126,18 @@ inline bool reads(std::string_view bytes) {
         break;
       case 'j':
         read_journal(text);
+        break;
+      case 'l':
+        read_limit(std::string(text));
+        break;
+      case 'd':
+        for (const double x : apps::parse_disc("--disc", std::string(text))) expect_finite(x);
+        break;
+      case 'g':
+        read_grid(text);
+        break;
+      case 'f':
+        read_problem_file(text);
         break;
       default:
         return false;
