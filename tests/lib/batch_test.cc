@@ -8,11 +8,11 @@
 #include <span>
 #include <vector>
 
-#include "carnot/make_dynamics.h"
 #include "carnot/scenes/unicycle.h"
 #include "carnot/scenes/vehicle.h"
 #include "carnot/scenes/vehicle_cosine.h"
 #include "testing/order.h"
+#include "testing/program_scenes.h"
 #include "testing/runs.h"
 
 namespace carnot::batch_test {
@@ -35,7 +35,7 @@ double difference(const std::vector<double>& a, const std::vector<double>& b) {
 
 // Gauss at round-off against the explicit method, for counts that fill packs and that do not.
 TEST(Batch, TwoMethodsAgree) {
-  const Dynamics dynamics = make_dynamics(scenes::VehicleCosine{});
+  const Dynamics dynamics = test::program_dynamics(scenes::VehicleCosine{}, "gauss16");
   for (const int count : {1, 7, 8, 9, 16, 25}) {
     auto exact = random_points(4, count, 3);
     auto fast = exact;
@@ -53,7 +53,7 @@ TEST(Batch, TwoMethodsAgree) {
 // The error follows the tolerance: a method of order 8 whose steps are set by an estimate of order
 // 7, over six decades.
 TEST(Batch, ErrorFollowsTheTolerance) {
-  const Dynamics dynamics = make_dynamics(scenes::Vehicle{});
+  const Dynamics dynamics = test::program_dynamics(scenes::Vehicle{}, "gauss16");
   auto exact = random_points(4, 8, 4);
   const auto start = exact;
   (void)dynamics.flow_batch(StepPlan::equal(0, 5, 80), 8, exact);
@@ -69,7 +69,7 @@ TEST(Batch, ErrorFollowsTheTolerance) {
 }
 
 TEST(Batch, BackwardsUndoesForwards) {
-  const Dynamics dynamics = make_dynamics(scenes::Unicycle{});
+  const Dynamics dynamics = test::program_dynamics(scenes::Unicycle{}, "gauss16");
   const auto start = random_points(3, 8, 5);
   auto z = start;
   (void)dynamics.adaptive_batch(0, 3, 1e-12, 8, z);
@@ -79,7 +79,7 @@ TEST(Batch, BackwardsUndoesForwards) {
 }
 
 TEST(Batch, DoesNotDependOnTheThreads) {
-  const Dynamics dynamics = make_dynamics(scenes::VehicleCosine{});
+  const Dynamics dynamics = test::program_dynamics(scenes::VehicleCosine{}, "gauss16");
   auto one = random_points(4, 37, 6);
   auto three = one;
   auto gauss_one = one;
@@ -94,7 +94,7 @@ TEST(Batch, DoesNotDependOnTheThreads) {
 
 // A trajectory that can't be followed becomes NaN, its neighbours are not touched.
 TEST(Batch, OneFailureStaysOne) {
-  const Dynamics dynamics = make_dynamics(scenes::VehicleCosine{});
+  const Dynamics dynamics = test::program_dynamics(scenes::VehicleCosine{}, "gauss16");
   const auto start = random_points(4, 11, 7);
   auto alone = start;
   for (int i = 0; i < 11; ++i) {

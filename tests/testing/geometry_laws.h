@@ -29,18 +29,6 @@ template <int n>
 using Run =
     std::function<FlowReport(double duration, long steps, State<double, n>& z, TangentState<n>& m)>;
 
-// The run of a method on the scene with uneven parameters.
-template <class Scene>
-Run<Scene::kDof> method_run(const Tableau<double>& tableau) {
-  return [tableau](double duration, long steps, auto& z, auto& m) {
-    using System = VelocityConstraints<Scene>;
-    const System system(uneven<Scene>());
-    RungeKutta<System> method(system, tableau);
-    const auto go_on = [](long, const auto&, const auto&) { return true; };
-    return tangent_flow(method, StepPlan::equal(0, duration, steps), z, m, go_on);
-  };
-}
-
 // max-norm of M'JM - J over max(1, |M|^2).
 template <int size>
 double relative_symplecticity_defect(const Matrix<double, size, size>& m) {

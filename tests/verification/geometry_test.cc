@@ -2,27 +2,28 @@
 #include <string>
 #include <tuple>
 
-#include "carnot/tableau/make_tableau.h"
 #include "testing/geometry_laws.h"
+#include "testing/program_scenes.h"
 
 namespace carnot::geometry_test {
 namespace {
 
 template <class Scene>
-void expect_laws(const Tableau<double>& tableau) {
-  test::expect_geometry_laws<Scene::kDof>(test::method_run<Scene>(tableau));
+void expect_laws(const std::string& method) {
+  const Dynamics dynamics = test::program_dynamics(test::uneven<Scene>(), method);
+  test::expect_geometry_laws<Scene::kDof>(test::run_of<Scene::kDof>(dynamics));
 }
 
 struct SceneLaws {
   const char* name;
-  void (*expect)(const Tableau<double>&);
+  void (*expect)(const std::string& method);
 };
 
 class Geometry : public ::testing::TestWithParam<std::tuple<SceneLaws, std::string>> {};
 
 TEST_P(Geometry, Holds) {
   const auto& [scene, method] = GetParam();
-  scene.expect(make_tableau(*find_method(method)));
+  scene.expect(method);
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -12,7 +12,8 @@
 #include <string>
 
 #include "testing/attitude.h"
-#include "testing/charted_scene_runs.h"
+#include "testing/charted_scenes.h"
+#include "testing/program_scenes.h"
 #include "testing/reference.h"
 
 namespace carnot::velocity_scenes_closed_form_test {
@@ -32,7 +33,8 @@ Vector<double, 2 * Scene::kDof> end(const Scene& scene,
   constexpr long kSteps = 256;  // gauss8 is then exact to round-off
   auto z = make_state<double, Scene::kDof>(q, p);
   auto m = test::identity_tangent<Scene::kDof>();
-  EXPECT_TRUE(test::gauss8_run(scene, time, kSteps, z, m).completed());
+  const auto run = test::run_of<Scene::kDof>(test::program_dynamics(scene, "gauss8"));
+  EXPECT_TRUE(run(time, kSteps, z, m).completed());
   if (tangent != nullptr) *tangent = m;
   return z.value;
 }

@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "testing/attitude.h"
-#include "testing/charted_scene_runs.h"
+#include "testing/charted_scenes.h"
+#include "testing/program_scenes.h"
 
 namespace carnot::velocity_scenes_flow_test {
 namespace {
@@ -60,7 +61,7 @@ class VelocityScenesFlowTest : public ::testing::Test {
   using System = VelocityConstraints<Scene>;
 
   void run(double duration, long steps, State<double, kDof>& z, test::TangentState<kDof>& m) const {
-    const FlowReport report = test::gauss8_run(scene_, duration, steps, z, m);
+    const FlowReport report = run_(duration, steps, z, m);
     ASSERT_TRUE(report.completed()) << report.reason();
   }
 
@@ -75,6 +76,7 @@ class VelocityScenesFlowTest : public ::testing::Test {
 
   const Scene scene_ = test::uneven_scene<Scene>();
   const System system_{scene_};
+  const test::Run<kDof> run_ = test::run_of<kDof>(test::program_dynamics(scene_, "gauss8"));
   test::Generator generator_{1};
 };
 TYPED_TEST_SUITE(VelocityScenesFlowTest, test::ChartedScenes, test::SceneNames);
