@@ -11,21 +11,7 @@
 #include <xsimd/xsimd.hpp>
 
 #include "carnot/language/expression.h"
-
-namespace carnot::language {
-
-// A tape on registers of another type than those of its own; a friend of Tape.
-template <class V>
-struct TapeOn {
-  explicit TapeOn(const Tape& of) : tape(of), code(TapeMachine<V>::bind(of)) {}
-  bool run_rows(std::span<const double* const> in, std::span<double* const> out) const {
-    return TapeMachine<V>::template run<kTapeLanes>(tape, code, in, out);
-  }
-  const Tape& tape;
-  std::vector<typename TapeMachine<V>::Instruction> code;
-};
-
-}  // namespace carnot::language
+#include "testing/tape_on.h"
 
 namespace carnot::tape_machine_test {
 namespace {

@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "carnot/language/native_tape.h"
 #include "carnot/language/tape_machine.h"
 
 namespace carnot::language {
@@ -429,20 +430,30 @@ Tape::Tape(Graph& graph,
            std::span<const Expression> outputs,
            std::span<const int> output_groups) {
   TapeBuilder(graph, *this).build(inputs, outputs, output_groups);
-  wide_ = TapeMachine<WideNumber>::bind(*this);
   single_ = TapeMachine<double>::bind(*this);
+  std::vector<std::uint32_t> wanted;
+  for (const auto& group : out_) wanted.insert(wanted.end(), group.begin(), group.end());
+  native_ = NativeTape::make(steps_, wanted);
+  if (native_) {
+    code_ = native_->code();
+  } else {
+    wide_ = TapeMachine<WideNumber>::bind(*this);
+  }
 }
 
 bool Tape::run(std::span<const double* const> in, std::span<double* const> out) const {
-  return TapeMachine<double>::run<1>(*this, single_, in, out);
+  using Machine = TapeMachine<double>;
+  return Machine::run<1>(
+      *this, [&](std::byte* memory) { Machine::execute(single_.data(), memory); }, in, out);
 }
 
-void Tape::execute(std::byte* memory) const {
+void Tape::interpret(std::byte* memory) const {
   TapeMachine<WideNumber>::execute(wide_.data(), memory);
 }
 
 bool Tape::run_rows(std::span<const double* const> in, std::span<double* const> out) const {
-  return TapeMachine<WideNumber>::run<kTapeLanes>(*this, wide_, in, out);
+  return TapeMachine<WideNumber>::run<kTapeLanes>(
+      *this, [&](std::byte* memory) { execute(memory); }, in, out);
 }
 
 }  // namespace carnot::language

@@ -18,6 +18,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -66,6 +67,20 @@ struct TapeStep {
   std::uint32_t second = 0;
 };
 
+// A step as the interpreter reads it. Slots are offsets in bytes.
+struct TapeInstruction {
+  union Operand {
+    std::uint64_t slot;
+    double constant;
+  };
+  void (*handler)() = nullptr;  // a TapeMachine::Handler
+  std::array<Operand, 3> operands{};
+  std::uint32_t to = 0;
+  std::uint32_t second = 0;
+};
+
+class NativeTape;
+
 class Tape {
  public:
   Tape() = default;
@@ -94,36 +109,30 @@ class Tape {
   };
   [[nodiscard]] std::span<const Run> inputs() const { return in_; }
   [[nodiscard]] std::span<const std::uint32_t> outputs(int group) const { return out_[group]; }
-  void execute(std::byte* memory) const;
+  void execute(std::byte* memory) const { code_ != nullptr ? code_(memory) : interpret(memory); }
 
   // How many steps there are, and slots.
   [[nodiscard]] int steps() const { return static_cast<int>(steps_.size()); }
   [[nodiscard]] int slots() const { return slots_; }
 
  private:
+  void interpret(std::byte* memory) const;
+
   friend class TapeBuilder;
   template <class V, bool tail_calls>
   friend struct TapeMachine;
   template <class V>
   friend struct TapeOn;
 
-  // A step as the interpreter reads it. Slots are offsets in bytes.
-  union Operand {
-    std::uint64_t slot;
-    double constant;
-  };
-  struct Instruction {
-    void (*handler)() = nullptr;  // a TapeMachine::Handler
-    std::array<Operand, 3> operands{};
-    std::uint32_t to = 0;
-    std::uint32_t second = 0;
-  };
   std::vector<TapeStep> steps_;
   std::vector<Run> in_;
   std::vector<std::vector<std::uint32_t>> out_;  // the slots of each group
   int slots_ = 0;
-  std::vector<Instruction> wide_;    // for registers
-  std::vector<Instruction> single_;  // for one number
+  std::vector<TapeInstruction> single_;  // for one number
+  // For registers: machine code, or what the interpreter reads where there is none.
+  std::shared_ptr<const NativeTape> native_;
+  void (*code_)(std::byte* memory) = nullptr;
+  std::vector<TapeInstruction> wide_;
 };
 
 }  // namespace carnot::language

@@ -34,7 +34,7 @@ template <class V, bool tail_calls = kTailCalls>
 struct TapeMachine {
   using Ops = pack_lane::Ops<V>;
   using Register = typename Ops::Register;
-  using Instruction = Tape::Instruction;
+  using Instruction = TapeInstruction;
   using Where = TapeOperand::Where;
   // Nothing is returned from a jump. (As a template argument a register loses its attributes.)
   static void result_of(std::true_type);
@@ -44,7 +44,7 @@ struct TapeMachine {
   using AnyHandler = void (*)();
 
   template <Where where>
-  [[gnu::always_inline]] static V load(const Tape::Operand& operand,
+  [[gnu::always_inline]] static V load(const TapeInstruction::Operand& operand,
                                        const std::byte* memory,
                                        const V& last) {
     if constexpr (where == Where::kResult) {
@@ -59,6 +59,18 @@ struct TapeMachine {
     *reinterpret_cast<Register*>(to) = Ops::register_of(x);
   }
 
+  // a b + c, rounded once where the registers can.
+  [[gnu::always_inline]] static V fused(const V& a, const V& b, const V& c) {
+#if XSIMD_WITH_AVX512F
+    // xsimd has a product and a sum here, which only an optimising compiler makes one.
+    if constexpr (sizeof(V) == 64) return V(_mm512_fmadd_pd(a, b, c));
+#endif
+    if constexpr (std::is_same_v<V, double>) {
+      return a * b + c;
+    } else {
+      return xsimd::fma(a, b, c);
+    }
+  }
   template <class F>
   static V each_number(const V& x, const F& f) {
     alignas(64) std::array<double, Ops::kSize> numbers;
@@ -84,10 +96,8 @@ struct TapeMachine {
         return a;
       } else if constexpr (operation == TapeOperation::kSqrt) {
         return Ops::sqrt(a);
-      } else if constexpr (std::is_same_v<V, double>) {
-        return operation == TapeOperation::kFused ? c + a * b : c - a * b;
       } else {
-        return operation == TapeOperation::kFused ? xsimd::fma(a, b, c) : xsimd::fnma(a, b, c);
+        return fused(operation == TapeOperation::kFused ? a : -a, b, c);
       }
     }
   };
@@ -178,7 +188,20 @@ struct TapeMachine {
     return found;
   }
 
-  static AnyHandler function_handler(const TapeStep& s) {
+  // Of the steps that are more than one instruction of a processor.
+  static AnyHandler function(const TapeStep& s) {
+    switch (s.operation) {
+      case TapeOperation::kSin:
+        return handler_of<Circular<TapeOperation::kSin>, 1>(s);
+      case TapeOperation::kCos:
+        return handler_of<Circular<TapeOperation::kCos>, 1>(s);
+      case TapeOperation::kSinCos:
+        return handler_of<Circular<TapeOperation::kSinCos>, 1>(s);
+      case TapeOperation::kAtan2:
+        return handler_of<Atan2, 2>(s);
+      default:
+        break;
+    }
     switch (s.function) {
       case Operation::kStumpff:
         return stumpff_handler(s);
@@ -220,17 +243,25 @@ struct TapeMachine {
         return handler_of<Arithmetic<O::kCopy>, 1>(s);
       case O::kSqrt:
         return handler_of<Arithmetic<O::kSqrt>, 1>(s);
-      case O::kSin:
-        return handler_of<Circular<O::kSin>, 1>(s);
-      case O::kCos:
-        return handler_of<Circular<O::kCos>, 1>(s);
-      case O::kSinCos:
-        return handler_of<Circular<O::kSinCos>, 1>(s);
-      case O::kAtan2:
-        return handler_of<Atan2, 2>(s);
       default:
-        return function_handler(s);
+        return function(s);
     }
+  }
+
+  static Instruction instruction(const TapeStep& s, AnyHandler handler) {
+    Instruction instruction;
+    instruction.handler = handler;
+    const std::array operands{s.a, s.b, s.c};
+    for (std::size_t i = 0; i < operands.size(); ++i) {
+      if (operands[i].where == Where::kSlot) {
+        instruction.operands[i].slot = operands[i].slot * sizeof(Register);
+      } else {
+        instruction.operands[i].constant = operands[i].constant;
+      }
+    }
+    instruction.to = s.to * sizeof(Register);
+    instruction.second = s.second * sizeof(Register);
+    return instruction;
   }
 
   static Result stop(const Instruction*, std::byte*, Register last) {
@@ -240,30 +271,17 @@ struct TapeMachine {
   static std::vector<Instruction> bind(const Tape& tape) {
     std::vector<Instruction> code;
     code.reserve(tape.steps_.size() + 1);
-    for (const TapeStep& s : tape.steps_) {
-      Instruction instruction;
-      instruction.handler = handler(s);
-      const std::array operands{s.a, s.b, s.c};
-      for (std::size_t i = 0; i < operands.size(); ++i) {
-        if (operands[i].where == Where::kSlot) {
-          instruction.operands[i].slot = operands[i].slot * sizeof(Register);
-        } else {
-          instruction.operands[i].constant = operands[i].constant;
-        }
-      }
-      instruction.to = s.to * sizeof(Register);
-      instruction.second = s.second * sizeof(Register);
-      code.push_back(instruction);
-    }
+    for (const TapeStep& s : tape.steps_) code.push_back(instruction(s, handler(s)));
     code.emplace_back();
     if constexpr (tail_calls) code.back().handler = reinterpret_cast<AnyHandler>(&stop);
     return code;
   }
 
-  // At `lanes` points side by side, in rows of as many numbers. Whether all results are finite.
-  template <int lanes>
+  // At `lanes` points side by side, in rows of as many numbers, with all steps done by `execute` on
+  // the memory that it gets. Whether all results are finite.
+  template <int lanes, class Execute>
   static bool run(const Tape& tape,
-                  const std::vector<Instruction>& code,
+                  const Execute& execute,
                   std::span<const double* const> in,
                   std::span<double* const> out) {
     constexpr std::size_t kSmall = 16384;  // bytes that a call may take of the stack
@@ -281,7 +299,7 @@ struct TapeMachine {
           store(Ops::load(from), to);
         }
       }
-      execute(code.data(), memory);
+      execute(memory);
       for (std::size_t group = 0; group < tape.out_.size(); ++group) {
         if (out[group] == nullptr || tape.out_[group].empty()) continue;
         double* to = out[group] + first;

@@ -219,17 +219,7 @@ class TapeIteration {
   }
 
   TapeIteration(const TextSystem& s, const StageData& data)
-      : s_(s), data_(data), stride_(s.rate.slots() * sizeof(Register)) {
-    slots_.fill(-1);
-    for (const Tape::Run& run : s.rate.inputs()) {
-      for (std::uint32_t i = 0; i < run.count; ++i) {
-        const int slot = static_cast<int>((run.slot + i) * sizeof(Register));
-        if (run.group == 1) slots_[run.row + i] = slot;
-        if (run.group == 2) slots_[dof + run.row + i] = slot;
-        if (run.group == 0) time_ = slot;
-      }
-    }
-  }
+      : s_(s), data_(data), stride_(s.rate.slots() * sizeof(Register)) {}
 
   StageReport run(const IterationLimits<double>& limits) {
     StageReport report;
@@ -247,7 +237,7 @@ class TapeIteration {
   // A row of numbers into a slot of each pass.
   void put(const double* row, int slot) {
     for (int pass = 0; pass < kPasses; ++pass) {
-      *reinterpret_cast<Register*>(memory_.data() + pass * stride_ + slot) =
+      *reinterpret_cast<Register*>(memory_.data() + pass * stride_ + slot * sizeof(Register)) =
           Ops::register_of(Ops::load(row + pass * Ops::kSize));
     }
   }
@@ -256,41 +246,43 @@ class TapeIteration {
                                                       slot * sizeof(Register)));
   }
 
-  double sweep(double* change) {
-    const double moved = move_stages<kSize, kLanes>(data_, change, [&](int k, const Pack<kLanes>&) {
-      if (slots_[k] >= 0) put(data_.stages + k * kLanes, slots_[k]);
-    });
-    if (time_ >= 0) put(data_.time, time_);
-    bool good = true;
+  // Whether all points pass all checks, and the rates are finite.
+  [[nodiscard]] bool all_are_rates() const {
+    const std::uint32_t* const slots = s_.rate.outputs(0).data();
+    typename Ops::Bools good(true);
+    // Two sums, so that the additions need not wait for each other.
+    Lane even(0.0);
+    Lane odd(0.0);
     for (int pass = 0; pass < kPasses; ++pass) {
-      s_.rate.execute(memory_.data() + pass * stride_);
-      for (const std::uint32_t slot : s_.rate.outputs(2)) {
-        good = good && Ops::all(at(pass, slot) > Lane(0.0));
-      }
-      const Lane weight = Ops::load(data_.weights + pass * Ops::kSize);
-      Lane even(0.0);
-      Lane odd(0.0);
-      const std::uint32_t* const slots = s_.rate.outputs(0).data();
+      for (const std::uint32_t slot : s_.rate.outputs(2))
+        good = good & (at(pass, slot) > Lane(0.0));
       for (int k = 0; k < kSize; k += 2) {
-        const Lane a = weight * at(pass, slots[k]);
-        const Lane b = weight * at(pass, slots[k + 1]);
-        even += Lane(0.0) * a;
-        odd += Lane(0.0) * b;
-        rates_[pass][k] = Ops::register_of(a);
-        rates_[pass][k + 1] = Ops::register_of(b);
+        even += Lane(0.0) * at(pass, slots[k]);
+        odd += Lane(0.0) * at(pass, slots[k + 1]);
       }
-      good = good && Ops::all(even + odd == Lane(0.0));
-      double* y = data_.algebraic + pass * Ops::kSize;
+    }
+    return Ops::all(good & (even + odd == Lane(0.0)));
+  }
+
+  double sweep(double* change) {
+    const int* const inputs = s_.rate_slots.data();
+    const double moved = move_stages<kSize, kLanes>(data_, change, [&](int k, const Pack<kLanes>&) {
+      if (inputs[k] >= 0) put(data_.stages + k * kLanes, inputs[k]);
+    });
+    if (inputs[kSize] >= 0) put(data_.time, inputs[kSize]);
+    for (int pass = 0; pass < kPasses; ++pass) s_.rate.execute(memory_.data() + pass * stride_);
+    if (!all_are_rates()) return kNaN;
+    const std::uint32_t* const slots = s_.rate.outputs(0).data();
+    for (int pass = 0; pass < kPasses; ++pass) {
+      const int first = pass * Ops::kSize;
+      const Lane weight = Ops::load(data_.weights + first);
+      for (int k = 0; k < kSize; ++k) {
+        Ops::store(weight * at(pass, slots[k]), data_.increments + k * kLanes + first);
+      }
+      double* y = data_.algebraic + first;
       for (const std::uint32_t slot : s_.rate.outputs(1)) {
         Ops::store(at(pass, slot), y);
         y += kLanes;
-      }
-    }
-    if (!good) return kNaN;
-    // Not before all of them are known to exist.
-    for (int pass = 0; pass < kPasses; ++pass) {
-      for (int k = 0; k < kSize; ++k) {
-        Ops::store(Ops::of(rates_[pass][k]), data_.increments + k * kLanes + pass * Ops::kSize);
       }
     }
     return moved;
@@ -299,9 +291,6 @@ class TapeIteration {
   const TextSystem& s_;
   const StageData& data_;
   std::size_t stride_;
-  std::array<int, kSize> slots_;
-  int time_ = -1;
-  Register rates_[kPasses][kSize];
   alignas(64) std::array<std::byte, kRoom> memory_;
 };
 
@@ -401,9 +390,23 @@ void branch(const void* opaque, double* y) {
   std::copy(branch.begin(), branch.end(), y);
 }
 
+std::vector<int> slots_of_rate(const TextSystem& system) {
+  std::vector<int> slots(2 * system.dof + 1, -1);
+  for (const Tape::Run& run : system.rate.inputs()) {
+    for (std::uint32_t i = 0; i < run.count; ++i) {
+      const int slot = static_cast<int>(run.slot + i);
+      if (run.group == 0) slots[2 * system.dof] = slot;
+      if (run.group == 1) slots[run.row + i] = slot;
+      if (run.group == 2) slots[system.dof + run.row + i] = slot;
+    }
+  }
+  return slots;
+}
+
 }  // namespace
 
 void connect_calls(TextSystem& system) {
+  system.rate_slots = slots_of_rate(system);
   using Iterate = StageReport (*)(const void*, const StageData&, const IterationLimits<double>&);
   constexpr std::array<Iterate, kMostDof> kIterate{iterate<1>,
                                                    iterate<2>,
