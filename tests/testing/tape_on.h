@@ -17,8 +17,8 @@ struct TapeOn {
     return TapeMachine<V>::template run<kTapeLanes>(
         tape, [&](std::byte* memory) { TapeMachine<V>::execute(code.data(), memory); }, in, out);
   }
-  // Whether the tape itself is machine code.
-  [[nodiscard]] bool is_native() const { return tape.native_ != nullptr; }
+  // Whether the tape itself, once it has been run, is machine code.
+  [[nodiscard]] bool is_native() const { return tape.native_->code() != nullptr; }
 
   const Tape& tape;
   std::vector<TapeInstruction> code;

@@ -43,6 +43,7 @@ struct Machine<xsimd::batch<double, xsimd::fma3<xsimd::avx2>>> {
 };
 #endif
 
+using Outputs = std::span<const std::vector<std::uint32_t>>;
 constexpr int kNone = -1;
 
 // The steps with names for values instead of places: a slot holds one value after the other.
@@ -54,7 +55,7 @@ class Values {
     int second = kNone;
   };
 
-  Values(std::span<const TapeStep> steps, std::span<const std::uint32_t> outputs) {
+  Values(std::span<const TapeStep> steps, const Outputs& outputs) {
     int last = kNone;
     for (const TapeStep& s : steps) {
       Step step;
@@ -73,10 +74,12 @@ class Values {
       steps_.push_back(step);
     }
     wanted_.assign(uses_.size(), false);
-    for (const std::uint32_t slot : outputs) {
-      const int value = at(slot);
-      wanted_.resize(uses_.size(), false);
-      wanted_[value] = true;
+    for (const std::vector<std::uint32_t>& group : outputs) {
+      for (const std::uint32_t slot : group) {
+        const int value = at(slot);
+        wanted_.resize(uses_.size(), false);
+        wanted_[value] = true;
+      }
     }
   }
 
@@ -137,7 +140,7 @@ class Writer {
  public:
   // `calls` are those of the steps that are called, and stay where they are.
   Writer(std::span<const TapeStep> steps,
-         std::span<const std::uint32_t> outputs,
+         const Outputs& outputs,
          const std::vector<TapeInstruction>& calls,
          Xbyak::CodeGenerator& code)
       : steps_(steps),
@@ -448,13 +451,13 @@ class Writer {
 };
 
 template <class V>
-class TapeOf : public NativeTape {
+class MemoryOf : public NativeTape::Memory {
  public:
-  TapeOf(std::span<const TapeStep> steps, std::span<const std::uint32_t> outputs)
-      : calls_(calls_of(steps)), memory_(kPage, Xbyak::AutoGrow) {
-    Writer<V>(steps, outputs, calls_, memory_).write();
-    code_ = memory_.getCode<Code>();
+  MemoryOf(std::span<const TapeStep> steps, const Outputs& outputs)
+      : calls_(calls_of(steps)), code_(kPage, Xbyak::AutoGrow) {
+    Writer<V>(steps, outputs, calls_, code_).write();
   }
+  [[nodiscard]] NativeTape::Code code() const override { return code_.getCode<NativeTape::Code>(); }
 
  private:
   static constexpr std::size_t kPage = 4096;
@@ -469,16 +472,14 @@ class TapeOf : public NativeTape {
   }
 
   const std::vector<TapeInstruction> calls_;  // whose places are in the code
-  Xbyak::CodeGenerator memory_;
+  Xbyak::CodeGenerator code_;
 };
 
-}  // namespace
-
-std::shared_ptr<const NativeTape> NativeTape::make(std::span<const TapeStep> steps,
-                                                   std::span<const std::uint32_t> outputs) {
+std::unique_ptr<const NativeTape::Memory> memory_of(std::span<const TapeStep> steps,
+                                                    const Outputs& outputs) {
   if constexpr (Machine<WideNumber>::exists) {
     try {
-      return std::make_shared<TapeOf<WideNumber>>(steps, outputs);
+      return std::make_unique<MemoryOf<WideNumber>>(steps, outputs);
     } catch (const std::exception&) {  // of the assembler: the system allows no code
       return nullptr;
     }
@@ -486,17 +487,34 @@ std::shared_ptr<const NativeTape> NativeTape::make(std::span<const TapeStep> ste
   return nullptr;
 }
 
+}  // namespace
 }  // namespace carnot::language
 
 #else
 
 namespace carnot::language {
+namespace {
 
-std::shared_ptr<const NativeTape> NativeTape::make(std::span<const TapeStep> /*steps*/,
-                                                   std::span<const std::uint32_t> /*outputs*/) {
+using Outputs = std::span<const std::vector<std::uint32_t>>;
+std::unique_ptr<const NativeTape::Memory> memory_of(std::span<const TapeStep> /*steps*/,
+                                                    const Outputs& /*outputs*/) {
   return nullptr;
 }
 
+}  // namespace
 }  // namespace carnot::language
 
 #endif
+
+namespace carnot::language {
+
+NativeTape::Code NativeTape::make(std::span<const TapeStep> steps,
+                                  std::span<const std::vector<std::uint32_t>> outputs) {
+  std::call_once(once_, [&] {
+    memory_ = memory_of(steps, outputs);
+    if (memory_) code_.store(memory_->code(), std::memory_order_release);
+  });
+  return code();
+}
+
+}  // namespace carnot::language

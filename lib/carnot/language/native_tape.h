@@ -15,30 +15,41 @@
 // program make some. Elsewhere the interpreter does the same.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <span>
-
-#include "carnot/language/tape.h"
+#include <vector>
 
 namespace carnot::language {
 
-// Immutable, and safe to run by many threads.
+struct TapeStep;
+
+// Of one tape. Safe to use by many threads.
 class NativeTape {
  public:
-  // Null where there is none. `outputs` are the slots of the results that are wanted, once all
-  // steps are done. Takes about 0.2 us a step.
-  static std::shared_ptr<const NativeTape> make(std::span<const TapeStep> steps,
-                                                std::span<const std::uint32_t> outputs);
-
-  virtual ~NativeTape() = default;
   // Does all steps on the slots in `memory`, as Tape::execute() has them.
   using Code = void (*)(std::byte* memory);
-  [[nodiscard]] Code code() const { return code_; }
 
- protected:
-  Code code_ = nullptr;
+  // Null before it is made, and where there is none.
+  [[nodiscard]] Code code() const { return code_.load(std::memory_order_acquire); }
+  // Makes it, once: most tapes of a scene are never run on many points. `outputs` are the slots of
+  // the results that are wanted, in groups. Takes about 0.2 us a step, and 20 us.
+  Code make(std::span<const TapeStep> steps, std::span<const std::vector<std::uint32_t>> outputs);
+
+  // Where the code is.
+  class Memory {
+   public:
+    virtual ~Memory() = default;
+    [[nodiscard]] virtual Code code() const = 0;
+  };
+
+ private:
+  std::once_flag once_;
+  std::atomic<Code> code_ = nullptr;
+  std::unique_ptr<const Memory> memory_;
 };
 
 }  // namespace carnot::language

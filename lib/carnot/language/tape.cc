@@ -9,7 +9,6 @@
 #include <unordered_map>
 #include <utility>
 
-#include "carnot/language/native_tape.h"
 #include "carnot/language/tape_machine.h"
 
 namespace carnot::language {
@@ -431,14 +430,8 @@ Tape::Tape(Graph& graph,
            std::span<const int> output_groups) {
   TapeBuilder(graph, *this).build(inputs, outputs, output_groups);
   single_ = TapeMachine<double>::bind(*this);
-  std::vector<std::uint32_t> wanted;
-  for (const auto& group : out_) wanted.insert(wanted.end(), group.begin(), group.end());
-  native_ = NativeTape::make(steps_, wanted);
-  if (native_) {
-    code_ = native_->code();
-  } else {
-    wide_ = TapeMachine<WideNumber>::bind(*this);
-  }
+  wide_ = TapeMachine<WideNumber>::bind(*this);
+  native_ = std::make_shared<NativeTape>();
 }
 
 bool Tape::run(std::span<const double* const> in, std::span<double* const> out) const {
@@ -447,8 +440,9 @@ bool Tape::run(std::span<const double* const> in, std::span<double* const> out) 
       *this, [&](std::byte* memory) { Machine::execute(single_.data(), memory); }, in, out);
 }
 
-void Tape::interpret(std::byte* memory) const {
-  TapeMachine<WideNumber>::execute(wide_.data(), memory);
+void Tape::begin(std::byte* memory) const {
+  const NativeTape::Code code = native_->make(steps_, out_);
+  code != nullptr ? code(memory) : TapeMachine<WideNumber>::execute(wide_.data(), memory);
 }
 
 bool Tape::run_rows(std::span<const double* const> in, std::span<double* const> out) const {

@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "carnot/language/expression.h"
+#include "carnot/language/native_tape.h"
 #include "carnot/language/variables.h"
 
 namespace carnot::language {
@@ -79,8 +80,6 @@ struct TapeInstruction {
   std::uint32_t second = 0;
 };
 
-class NativeTape;
-
 class Tape {
  public:
   Tape() = default;
@@ -109,14 +108,18 @@ class Tape {
   };
   [[nodiscard]] std::span<const Run> inputs() const { return in_; }
   [[nodiscard]] std::span<const std::uint32_t> outputs(int group) const { return out_[group]; }
-  void execute(std::byte* memory) const { code_ != nullptr ? code_(memory) : interpret(memory); }
+  void execute(std::byte* memory) const {
+    const NativeTape::Code code = native_->code();
+    code != nullptr ? code(memory) : begin(memory);
+  }
 
   // How many steps there are, and slots.
   [[nodiscard]] int steps() const { return static_cast<int>(steps_.size()); }
   [[nodiscard]] int slots() const { return slots_; }
 
  private:
-  void interpret(std::byte* memory) const;
+  // Makes machine code, and runs that; or the interpreter, where there is none.
+  void begin(std::byte* memory) const;
 
   friend class TapeBuilder;
   template <class V, bool tail_calls>
@@ -129,10 +132,8 @@ class Tape {
   std::vector<std::vector<std::uint32_t>> out_;  // the slots of each group
   int slots_ = 0;
   std::vector<TapeInstruction> single_;  // for one number
-  // For registers: machine code, or what the interpreter reads where there is none.
-  std::shared_ptr<const NativeTape> native_;
-  void (*code_)(std::byte* memory) = nullptr;
-  std::vector<TapeInstruction> wide_;
+  std::vector<TapeInstruction> wide_;    // for registers
+  std::shared_ptr<NativeTape> native_;   // in place of wide_, where there is one
 };
 
 }  // namespace carnot::language
