@@ -43,7 +43,6 @@ struct Machine<xsimd::batch<double, xsimd::fma3<xsimd::avx2>>> {
 };
 #endif
 
-using Outputs = std::span<const std::vector<std::uint32_t>>;
 constexpr int kNone = -1;
 
 // The steps with names for values instead of places: a slot holds one value after the other.
@@ -55,14 +54,27 @@ class Values {
     int second = kNone;
   };
 
-  Values(std::span<const TapeStep> steps, const Outputs& outputs) {
+  // A row of a group.
+  struct Row {
+    std::uint32_t group = 0;
+    std::uint32_t row = 0;
+  };
+
+  explicit Values(const TapeParts& tape) {
+    for (const TapeRows& rows : tape.inputs) {
+      for (std::uint32_t i = 0; i < rows.count; ++i) {
+        here_[rows.slot + i] = add(rows.slot + i);
+        inputs_.push_back({rows.group, rows.row + i});
+      }
+    }
     int last = kNone;
-    for (const TapeStep& s : steps) {
+    for (const TapeStep& s : tape.steps) {
       Step step;
       const std::array operands{s.a, s.b, s.c};
       for (std::size_t i = 0; i < operands.size(); ++i) {
         if (operands[i].where == TapeOperand::Where::kResult) step.operands[i] = last;
-        if (operands[i].where == TapeOperand::Where::kSlot) step.operands[i] = at(operands[i].slot);
+        if (operands[i].where == TapeOperand::Where::kSlot)
+          step.operands[i] = here_.at(operands[i].slot);
         if (step.operands[i] != kNone) {
           uses_[step.operands[i]].push_back(static_cast<int>(steps_.size()));
         }
@@ -73,12 +85,10 @@ class Values {
       last = step.result;
       steps_.push_back(step);
     }
-    wanted_.assign(uses_.size(), false);
-    for (const std::vector<std::uint32_t>& group : outputs) {
-      for (const std::uint32_t slot : group) {
-        const int value = at(slot);
-        wanted_.resize(uses_.size(), false);
-        wanted_[value] = true;
+    wanted_.resize(uses_.size());
+    for (std::uint32_t group = 0; group < tape.outputs.size(); ++group) {
+      for (std::uint32_t row = 0; row < tape.outputs[group].size(); ++row) {
+        wanted_[here_.at(tape.outputs[group][row])].push_back({group, row});
       }
     }
   }
@@ -86,9 +96,10 @@ class Values {
   [[nodiscard]] int count() const { return static_cast<int>(uses_.size()); }
   [[nodiscard]] const Step& step(int i) const { return steps_[i]; }
   [[nodiscard]] std::uint32_t slot(int value) const { return slots_[value]; }
-  // Whether it is in its slot before the first step.
-  [[nodiscard]] bool is_input(int value) const { return inputs_[value]; }
-  [[nodiscard]] bool is_wanted(int value) const { return wanted_[value]; }
+  // The first values are the inputs: where they are.
+  [[nodiscard]] std::span<const Row> inputs() const { return inputs_; }
+  // Where it is wanted as a result.
+  [[nodiscard]] std::span<const Row> wanted(int value) const { return wanted_[value]; }
   // The first step after step i that needs it; a large number where none does.
   [[nodiscard]] int next_use(int value, int i) const {
     const std::vector<int>& uses = uses_[value];
@@ -101,23 +112,14 @@ class Values {
   int add(std::uint32_t slot) {
     uses_.emplace_back();
     slots_.push_back(slot);
-    inputs_.push_back(false);
     return count() - 1;
-  }
-  int at(std::uint32_t slot) {
-    const auto [place, is_new] = here_.try_emplace(slot, 0);
-    if (is_new) {
-      place->second = add(slot);
-      inputs_.back() = true;
-    }
-    return place->second;
   }
 
   std::vector<Step> steps_;
   std::vector<std::vector<int>> uses_;  // the steps that need a value, in order
   std::vector<std::uint32_t> slots_;
-  std::vector<bool> inputs_;
-  std::vector<bool> wanted_;
+  std::vector<Row> inputs_;
+  std::vector<std::vector<Row>> wanted_;
   std::unordered_map<std::uint32_t, int> here_;  // what a slot holds
 };
 
@@ -134,47 +136,52 @@ bool is_called(const TapeStep& s) {
   }
 }
 
-// Writes the code of a tape: void(std::byte* memory).
+// Writes the code of a tape, a NativeTape::Code. rbx is `memory`, r12 `in` and r13 `out`. Two
+// registers add up 0 x for the results x that are wanted: zero where all of them are finite.
 template <class V>
 class Writer {
  public:
   // `calls` are those of the steps that are called, and stay where they are.
-  Writer(std::span<const TapeStep> steps,
-         const Outputs& outputs,
+  Writer(const TapeParts& tape,
          const std::vector<TapeInstruction>& calls,
          Xbyak::CodeGenerator& code)
-      : steps_(steps),
+      : tape_(tape),
         calls_(calls),
         code_(code),
-        values_(steps, outputs),
+        values_(tape),
         register_of_(values_.count(), kNone),
-        in_memory_(values_.count(), false) {
+        in_slot_(values_.count(), false) {
     value_in_.fill(kNone);
-    for (int value = 0; value < values_.count(); ++value) {
-      in_memory_[value] = values_.is_input(value);
-    }
   }
 
   void write() {
-    code_.push(code_.rbx);  // and the stack is aligned for calls
-    code_.mov(code_.rbx, code_.rdi);
+    const std::array kept{code_.rbx, code_.r12, code_.r13};  // and the stack is aligned for calls
+    for (const auto& x : kept) code_.push(x);
+    code_.mov(code_.r12, code_.rdi);
+    code_.mov(code_.r13, code_.rsi);
+    code_.mov(code_.rbx, code_.rdx);
+    clear_sums();
+    for (int value = 0; value < std::ssize(values_.inputs()); ++value) {
+      if (values_.wanted(value).empty()) continue;
+      code_.vmovupd(reg(0), home_of(value));
+      deliver(value, 0);
+    }
     std::size_t calls = 0;
-    for (step_ = 0; step_ < static_cast<int>(steps_.size()); ++step_) {
-      if (is_called(steps_[step_])) {
+    for (step_ = 0; step_ < std::ssize(tape_.steps); ++step_) {
+      if (is_called(tape_.steps[step_])) {
         call_function(calls_[calls++]);
       } else {
         compute();
       }
     }
+    return_whether_finite();
     code_.vzeroupper();
-    code_.pop(code_.rbx);
+    for (auto x = kept.rbegin(); x != kept.rend(); ++x) code_.pop(*x);
     code_.ret();
     code_.align(kWidth);
     code_.L(pool_);
     for (const double constant : constants_) {
-      for (std::size_t l = 0; l < kWidth / sizeof(double); ++l) {
-        code_.dq(std::bit_cast<std::uint64_t>(constant));
-      }
+      for (int l = 0; l < kLanes; ++l) code_.dq(std::bit_cast<std::uint64_t>(constant));
     }
     code_.ready(Xbyak::CodeGenerator::PROTECT_RE);
   }
@@ -182,6 +189,11 @@ class Writer {
  private:
   using Register = typename Machine<V>::Register;
   static constexpr int kWidth = sizeof(V);
+  static constexpr int kLanes = kWidth / sizeof(double);
+  static constexpr int kRow = kTapeLanes * sizeof(double);
+  static constexpr int kSums = NativeTape::kSums;
+  static constexpr int kFree = Machine<V>::kRegisters - kSums - 1;  // for values
+  static constexpr int kZero = kFree + kSums;
 
   // An operand of this step: a register, or a place in memory.
   struct Place {
@@ -191,8 +203,16 @@ class Writer {
     [[nodiscard]] bool is_register() const { return index != kNone; }
   };
 
-  Xbyak::Address slot_of(int value) {
-    return code_.ptr[code_.rbx + static_cast<int>(values_.slot(value) * kWidth)];
+  [[nodiscard]] static Register reg(int index) { return Register(index); }
+  Xbyak::Address at_slot(std::uint32_t slot) {
+    return code_.ptr[code_.rbx + static_cast<int>(slot * kWidth)];
+  }
+  // Where a value that is in no register is. That of an input takes an instruction, and rax.
+  Xbyak::Address home_of(int value) {
+    if (value >= std::ssize(values_.inputs())) return at_slot(values_.slot(value));
+    const auto [group, row] = values_.inputs()[value];
+    code_.mov(code_.rax, code_.ptr[code_.r12 + static_cast<int>(group * sizeof(double*))]);
+    return code_.ptr[code_.rax + static_cast<int>(row * kRow)];
   }
   Xbyak::Address constant_at(double x) {
     const auto [place, is_new] =
@@ -200,12 +220,17 @@ class Writer {
     if (is_new) constants_.push_back(x);
     return code_.ptr[code_.rip + pool_ + place->second * kWidth];
   }
-  [[nodiscard]] static Register reg(int index) { return Register(index); }
 
+  // Into its slot. That of an input is only wanted for a call, which takes the zero anyway.
   void store(int value) {
-    if (in_memory_[value]) return;
-    code_.vmovupd(slot_of(value), reg(register_of_[value]));
-    in_memory_[value] = true;
+    if (in_slot_[value]) return;
+    if (register_of_[value] == kNone) {  // an input
+      code_.vmovupd(reg(kZero), home_of(value));
+      code_.vmovupd(at_slot(values_.slot(value)), reg(kZero));
+    } else {
+      code_.vmovupd(at_slot(values_.slot(value)), reg(register_of_[value]));
+    }
+    in_slot_[value] = true;
   }
   void release(int index) {
     if (value_in_[index] != kNone) register_of_[value_in_[index]] = kNone;
@@ -217,11 +242,45 @@ class Writer {
     register_of_[value] = index;
   }
 
+  // ---- results
+
+  void clear_sums() {
+    code_.vxorpd(reg(kZero), reg(kZero), reg(kZero));
+    for (int i = 0; i < kSums; ++i) code_.vmovapd(reg(kFree + i), reg(kZero));
+  }
+  // To all rows that it is wanted in, of groups that are wanted.
+  void deliver(int value, int index) {
+    for (const auto& [group, row] : values_.wanted(value)) {
+      Xbyak::Label next;
+      code_.mov(code_.rcx, code_.ptr[code_.r13 + static_cast<int>(group * sizeof(double*))]);
+      code_.test(code_.rcx, code_.rcx);
+      code_.jz(next);
+      code_.vmovupd(code_.ptr[code_.rcx + static_cast<int>(row * kRow)], reg(index));
+      code_.vfmadd231pd(reg(kFree + delivered_++ % kSums), reg(kZero), reg(index));
+      code_.L(next);
+    }
+  }
+  void return_whether_finite() {
+    const Register sum = reg(kFree);
+    code_.vaddpd(sum, sum, reg(kFree + 1));
+    if constexpr (std::is_same_v<Register, Xbyak::Zmm>) {
+      code_.vcmpeqpd(code_.k1, sum, reg(kZero));
+      code_.kmovw(code_.eax, code_.k1);
+    } else {
+      code_.vcmpeqpd(sum, sum, reg(kZero));
+      code_.vmovmskpd(code_.eax, sum);
+    }
+    code_.cmp(code_.eax, (1 << kLanes) - 1);
+    code_.sete(code_.al);
+  }
+
+  // ---- operands
+
   // A register that no operand of this step is in.
   int take() {
     int best = kNone;
     int latest = -1;
-    for (int index = 0; index < Machine<V>::kRegisters; ++index) {
+    for (int index = 0; index < kFree; ++index) {
       if (pinned_[index]) continue;
       const int value = value_in_[index];
       if (value == kNone) {
@@ -234,7 +293,8 @@ class Writer {
         best = index;
       }
     }
-    if (latest != Values::kNever) store(value_in_[best]);
+    const int left = value_in_[best];
+    if (latest != Values::kNever && left >= std::ssize(values_.inputs())) store(left);
     release(best);
     pinned_[best] = true;
     return best;
@@ -248,9 +308,13 @@ class Writer {
       return place;
     }
     place.index = register_of_[value];
-    place.address = slot_of(value);
     place.ends = values_.next_use(value, step_) == Values::kNever;
-    if (!place.is_register() && !place.ends) load(place, value);
+    if (!place.is_register()) {
+      // An address that takes an instruction does not wait for the next one of its kind.
+      const bool is_input = value < std::ssize(values_.inputs());
+      place.address = home_of(value);
+      if (is_input || !place.ends) load(place, is_input && place.ends ? kNone : value);
+    }
     return place;
   }
   void load(Place& place, int value) {
@@ -373,7 +437,7 @@ class Writer {
   }
 
   void compute() {
-    const TapeStep& s = steps_[step_];
+    const TapeStep& s = tape_.steps[step_];
     const Values::Step& v = values_.step(step_);
     pinned_.fill(false);
     for (const int value : v.operands) {
@@ -401,13 +465,13 @@ class Writer {
 
   void finish(int result, int index) {
     hold(index, result);
-    if (values_.is_wanted(result)) store(result);
+    deliver(result, index);
   }
 
   // The interpreter's function finds its operands where the interpreter would have left them. It
   // keeps no register.
   void call_function(const TapeInstruction& instruction) {
-    const TapeStep& s = steps_[step_];
+    const TapeStep& s = tape_.steps[step_];
     const Values::Step& v = values_.step(step_);
     const std::array operands{s.a, s.b, s.c};
     int passed = kNone;
@@ -415,36 +479,55 @@ class Writer {
       if (operands[i].where == TapeOperand::Where::kSlot) store(v.operands[i]);
       if (operands[i].where == TapeOperand::Where::kResult) passed = v.operands[i];
     }
-    for (int index = 0; index < Machine<V>::kRegisters; ++index) {
+    for (int index = 0; index < kFree; ++index) {
       const int value = value_in_[index];
-      if (value != kNone && values_.next_use(value, step_) != Values::kNever) store(value);
+      if (value >= std::ssize(values_.inputs()) &&
+          values_.next_use(value, step_) != Values::kNever) {
+        store(value);
+      }
     }
     if (passed != kNone) {
       if (register_of_[passed] == kNone) {
-        code_.vmovupd(reg(0), slot_of(passed));
+        code_.vmovupd(reg(0), at_slot(values_.slot(passed)));
       } else if (register_of_[passed] != 0) {
         code_.vmovapd(reg(0), reg(register_of_[passed]));
       }
+    }
+    const bool has_sums = delivered_ > 0;
+    for (int i = 0; has_sums && i < kSums; ++i) {
+      code_.vmovupd(at_slot(tape_.slots + i), reg(kFree + i));
     }
     code_.mov(code_.rdi, reinterpret_cast<std::uintptr_t>(&instruction));
     code_.mov(code_.rsi, code_.rbx);
     code_.mov(code_.rax, reinterpret_cast<std::uintptr_t>(instruction.handler));
     code_.call(code_.rax);
-    for (int index = 0; index < Machine<V>::kRegisters; ++index) release(index);
-    if (v.second != kNone) in_memory_[v.second] = true;
-    in_memory_[v.result] = s.stored;
+    for (int index = 0; index < kFree; ++index) release(index);
+    clear_sums();
+    for (int i = 0; has_sums && i < kSums; ++i) {
+      code_.vmovupd(reg(kFree + i), at_slot(tape_.slots + i));
+    }
+    in_slot_[v.result] = s.stored;
     finish(v.result, 0);
+    if (v.second == kNone) return;
+    in_slot_[v.second] = true;
+    if (values_.wanted(v.second).empty()) return;
+    pinned_.fill(false);
+    pinned_[0] = true;
+    const int index = take();
+    code_.vmovupd(reg(index), at_slot(values_.slot(v.second)));
+    finish(v.second, index);
   }
 
-  std::span<const TapeStep> steps_;
+  const TapeParts& tape_;
   const std::vector<TapeInstruction>& calls_;
   Xbyak::CodeGenerator& code_;
   const Values values_;
   int step_ = 0;
   std::vector<int> register_of_;
-  std::vector<bool> in_memory_;  // whether its slot holds it
-  std::array<int, Machine<V>::kRegisters> value_in_{};
-  std::array<bool, Machine<V>::kRegisters> pinned_{};  // by an operand of this step
+  std::vector<bool> in_slot_;  // whether its slot holds it
+  std::array<int, kFree> value_in_{};
+  std::array<bool, kFree> pinned_{};  // by an operand of this step
+  int delivered_ = 0;                 // results so far
   std::vector<double> constants_;
   std::map<std::uint64_t, int> places_;  // of the constants' bits
   Xbyak::Label pool_;
@@ -453,9 +536,9 @@ class Writer {
 template <class V>
 class MemoryOf : public NativeTape::Memory {
  public:
-  MemoryOf(std::span<const TapeStep> steps, const Outputs& outputs)
-      : calls_(calls_of(steps)), code_(kPage, Xbyak::AutoGrow) {
-    Writer<V>(steps, outputs, calls_, code_).write();
+  explicit MemoryOf(const TapeParts& tape)
+      : calls_(calls_of(tape.steps)), code_(kPage, Xbyak::AutoGrow) {
+    Writer<V>(tape, calls_, code_).write();
   }
   [[nodiscard]] NativeTape::Code code() const override { return code_.getCode<NativeTape::Code>(); }
 
@@ -475,11 +558,10 @@ class MemoryOf : public NativeTape::Memory {
   Xbyak::CodeGenerator code_;
 };
 
-std::unique_ptr<const NativeTape::Memory> memory_of(std::span<const TapeStep> steps,
-                                                    const Outputs& outputs) {
+std::unique_ptr<const NativeTape::Memory> memory_of(const TapeParts& tape) {
   if constexpr (Machine<WideNumber>::exists) {
     try {
-      return std::make_unique<MemoryOf<WideNumber>>(steps, outputs);
+      return std::make_unique<MemoryOf<WideNumber>>(tape);
     } catch (const std::exception&) {  // of the assembler: the system allows no code
       return nullptr;
     }
@@ -495,11 +577,7 @@ std::unique_ptr<const NativeTape::Memory> memory_of(std::span<const TapeStep> st
 namespace carnot::language {
 namespace {
 
-using Outputs = std::span<const std::vector<std::uint32_t>>;
-std::unique_ptr<const NativeTape::Memory> memory_of(std::span<const TapeStep> /*steps*/,
-                                                    const Outputs& /*outputs*/) {
-  return nullptr;
-}
+std::unique_ptr<const NativeTape::Memory> memory_of(const TapeParts& /*tape*/) { return nullptr; }
 
 }  // namespace
 }  // namespace carnot::language
@@ -508,10 +586,9 @@ std::unique_ptr<const NativeTape::Memory> memory_of(std::span<const TapeStep> /*
 
 namespace carnot::language {
 
-NativeTape::Code NativeTape::make(std::span<const TapeStep> steps,
-                                  std::span<const std::vector<std::uint32_t>> outputs) {
+NativeTape::Code NativeTape::make(const TapeParts& parts) {
   std::call_once(once_, [&] {
-    memory_ = memory_of(steps, outputs);
+    memory_ = memory_of(parts);
     if (memory_) code_.store(memory_->code(), std::memory_order_release);
   });
   return code();

@@ -3,7 +3,8 @@
 // The interpreter (tape_machine.h) spends most of its time on what surrounds an operation: the jump
 // to the next step, loads of operands that were stored a moment ago, and addresses. The same steps,
 // in the same order and with the same roundings, are one instruction each where values stay in
-// registers: the results are those of the interpreter, bit for bit.
+// registers: the results are those of the interpreter, bit for bit. Inputs are read where the
+// caller has them, and results are written where the caller wants them.
 //
 // Registers are given out in one pass over the steps. Where none is left, the value that is needed
 // again last gives up its register (Belady 1966, which for code without branches is close to the
@@ -26,18 +27,31 @@
 namespace carnot::language {
 
 struct TapeStep;
+struct TapeRows;
+
+// What a tape is made of: its steps, where its inputs go, the slots of the results in groups, and
+// how many slots there are.
+struct TapeParts {
+  std::span<const TapeStep> steps;
+  std::span<const TapeRows> inputs;
+  std::span<const std::vector<std::uint32_t>> outputs;
+  int slots = 0;
+};
 
 // Of one tape. Safe to use by many threads.
 class NativeTape {
  public:
-  // Does all steps on the slots in `memory`, as Tape::execute() has them.
-  using Code = void (*)(std::byte* memory);
+  // Tape::run_rows() at as many points as a register holds, in rows of kTapeLanes numbers. `memory`
+  // has slots_for() registers.
+  using Code = bool (*)(const double* const* in, double* const* out, std::byte* memory);
+  static constexpr int slots_for(int slots) { return slots + kSums; }
+  static constexpr int kSums = 2;  // see native_tape.cc
 
   // Null before it is made, and where there is none.
   [[nodiscard]] Code code() const { return code_.load(std::memory_order_acquire); }
-  // Makes it, once: most tapes of a scene are never run on many points. `outputs` are the slots of
-  // the results that are wanted, in groups. Takes about 0.2 us a step, and 20 us.
-  Code make(std::span<const TapeStep> steps, std::span<const std::vector<std::uint32_t>> outputs);
+  // Makes it, once: most tapes of a scene are never run on many points. Takes about 0.2 us a step,
+  // and 20 us.
+  Code make(const TapeParts& parts);
 
   // Where the code is.
   class Memory {

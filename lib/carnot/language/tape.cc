@@ -382,7 +382,7 @@ class TapeBuilder {
       const auto group = static_cast<std::uint32_t>(of - inputs.begin());
       const auto row = static_cast<std::uint32_t>(variable - of->first);
       if (!tape_.in_.empty()) {
-        Tape::Run& last = tape_.in_.back();
+        TapeRows& last = tape_.in_.back();
         if (last.group == group && last.row + last.count == row) {
           ++last.count;
           continue;
@@ -440,14 +440,35 @@ bool Tape::run(std::span<const double* const> in, std::span<double* const> out) 
       *this, [&](std::byte* memory) { Machine::execute(single_.data(), memory); }, in, out);
 }
 
-void Tape::begin(std::byte* memory) const {
-  const NativeTape::Code code = native_->make(steps_, out_);
-  code != nullptr ? code(memory) : TapeMachine<WideNumber>::execute(wide_.data(), memory);
-}
-
 bool Tape::run_rows(std::span<const double* const> in, std::span<double* const> out) const {
-  return TapeMachine<WideNumber>::run<kTapeLanes>(
-      *this, [&](std::byte* memory) { execute(memory); }, in, out);
+  using Machine = TapeMachine<WideNumber>;
+  NativeTape::Code code = native_->code();
+  if (code == nullptr) code = native_->make({steps_, in_, out_, slots_});
+  if (code == nullptr) {
+    return Machine::run<kTapeLanes>(
+        *this, [&](std::byte* memory) { Machine::execute(wide_.data(), memory); }, in, out);
+  }
+  constexpr std::size_t kSmall = 16384;  // bytes that a call may take of the stack
+  alignas(64) std::array<std::byte, kSmall> small;
+  const std::size_t bytes = NativeTape::slots_for(slots_) * sizeof(WideNumber);
+  std::byte* const memory = bytes <= kSmall ? small.data() : tape_memory(bytes);
+  constexpr int kWide = pack_lane::Ops<WideNumber>::kSize;
+  if constexpr (kWide == kTapeLanes) {
+    return code(in.data(), out.data(), memory);
+  } else {
+    constexpr std::size_t kMostGroups = 8;
+    assert(in.size() <= kMostGroups && out.size() <= kMostGroups);
+    std::array<const double*, kMostGroups> from{};
+    std::array<double*, kMostGroups> to{};
+    bool finite = true;
+    for (int first = 0; first < kTapeLanes; first += kWide) {
+      const auto moved = [&](auto* rows) { return rows == nullptr ? nullptr : rows + first; };
+      std::transform(in.begin(), in.end(), from.begin(), moved);
+      std::transform(out.begin(), out.end(), to.begin(), moved);
+      finite = code(from.data(), to.data(), memory) && finite;
+    }
+    return finite;
+  }
 }
 
 }  // namespace carnot::language

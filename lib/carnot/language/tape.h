@@ -68,6 +68,14 @@ struct TapeStep {
   std::uint32_t second = 0;
 };
 
+// Rows of a group that go into neighbouring slots.
+struct TapeRows {
+  std::uint32_t group = 0;
+  std::uint32_t row = 0;
+  std::uint32_t slot = 0;
+  std::uint32_t count = 0;
+};
+
 // A step as the interpreter reads it. Slots are offsets in bytes.
 struct TapeInstruction {
   union Operand {
@@ -98,29 +106,11 @@ class Tape {
   // At kTapeLanes points side by side: number k of a group is row k of kTapeLanes numbers.
   bool run_rows(std::span<const double* const> in, std::span<double* const> out) const;
 
-  // For a caller that moves rows to and from the slots itself: where inputs are wanted, where
-  // results are, and all steps on the slots in `memory`, registers one after the other.
-  struct Run {  // rows of a group that go into neighbouring slots
-    std::uint32_t group;
-    std::uint32_t row;
-    std::uint32_t slot;
-    std::uint32_t count;
-  };
-  [[nodiscard]] std::span<const Run> inputs() const { return in_; }
-  [[nodiscard]] std::span<const std::uint32_t> outputs(int group) const { return out_[group]; }
-  void execute(std::byte* memory) const {
-    const NativeTape::Code code = native_->code();
-    code != nullptr ? code(memory) : begin(memory);
-  }
-
   // How many steps there are, and slots.
   [[nodiscard]] int steps() const { return static_cast<int>(steps_.size()); }
   [[nodiscard]] int slots() const { return slots_; }
 
  private:
-  // Makes machine code, and runs that; or the interpreter, where there is none.
-  void begin(std::byte* memory) const;
-
   friend class TapeBuilder;
   template <class V, bool tail_calls>
   friend struct TapeMachine;
@@ -128,7 +118,7 @@ class Tape {
   friend struct TapeOn;
 
   std::vector<TapeStep> steps_;
-  std::vector<Run> in_;
+  std::vector<TapeRows> in_;
   std::vector<std::vector<std::uint32_t>> out_;  // the slots of each group
   int slots_ = 0;
   std::vector<TapeInstruction> single_;  // for one number

@@ -292,7 +292,7 @@ struct TapeMachine {
     V even(0.0);
     V odd(0.0);
     for (int first = 0; first < lanes; first += Ops::kSize) {
-      for (const Tape::Run& rows : tape.in_) {
+      for (const TapeRows& rows : tape.in_) {
         const double* from = in[rows.group] + rows.row * lanes + first;
         std::byte* to = memory + rows.slot * sizeof(Register);
         for (std::uint32_t i = 0; i < rows.count; ++i, from += lanes, to += sizeof(Register)) {

@@ -202,104 +202,10 @@ bool jacobians(
   return true;
 }
 
-// The iteration on the tape of a linear system without a copy on the way: rows of the stages go
-// right into its slots, and rates right into the increments.
-template <int dof>
-class TapeIteration {
- public:
-  static constexpr int kSize = 2 * dof;
-  using Lane = pack_lane::Widest<kLanes>::type;
-  using Ops = pack_lane::Ops<Lane>;
-  using Register = typename Ops::Register;
-  static constexpr int kPasses = kLanes / Ops::kSize;  // registers for a row
-  static constexpr std::size_t kRoom = 32768;          // bytes on the stack
-
-  static bool fits(const TextSystem& s) {
-    return kPasses * s.rate.slots() * sizeof(Register) <= kRoom;
-  }
-
-  TapeIteration(const TextSystem& s, const StageData& data)
-      : s_(s), data_(data), stride_(s.rate.slots() * sizeof(Register)) {}
-
-  StageReport run(const IterationLimits<double>& limits) {
-    StageReport report;
-    report.end = iterate_stages<double, kSize>(
-        limits,
-        [&](double* change) {
-          ++report.sweeps;
-          return sweep(change);
-        },
-        [&] { return scale_of_stages<kSize, kLanes>(data_); });
-    return report;
-  }
-
- private:
-  // A row of numbers into a slot of each pass.
-  void put(const double* row, int slot) {
-    for (int pass = 0; pass < kPasses; ++pass) {
-      *reinterpret_cast<Register*>(memory_.data() + pass * stride_ + slot * sizeof(Register)) =
-          Ops::register_of(Ops::load(row + pass * Ops::kSize));
-    }
-  }
-  [[nodiscard]] Lane at(int pass, std::uint32_t slot) const {
-    return Ops::of(*reinterpret_cast<const Register*>(memory_.data() + pass * stride_ +
-                                                      slot * sizeof(Register)));
-  }
-
-  // Whether all points pass all checks, and the rates are finite.
-  [[nodiscard]] bool all_are_rates() const {
-    const std::uint32_t* const slots = s_.rate.outputs(0).data();
-    typename Ops::Bools good(true);
-    // Two sums, so that the additions need not wait for each other.
-    Lane even(0.0);
-    Lane odd(0.0);
-    for (int pass = 0; pass < kPasses; ++pass) {
-      for (const std::uint32_t slot : s_.rate.outputs(2))
-        good = good & (at(pass, slot) > Lane(0.0));
-      for (int k = 0; k < kSize; k += 2) {
-        even += Lane(0.0) * at(pass, slots[k]);
-        odd += Lane(0.0) * at(pass, slots[k + 1]);
-      }
-    }
-    return Ops::all(good & (even + odd == Lane(0.0)));
-  }
-
-  double sweep(double* change) {
-    const int* const inputs = s_.rate_slots.data();
-    const double moved = move_stages<kSize, kLanes>(data_, change, [&](int k, const Pack<kLanes>&) {
-      if (inputs[k] >= 0) put(data_.stages + k * kLanes, inputs[k]);
-    });
-    if (inputs[kSize] >= 0) put(data_.time, inputs[kSize]);
-    for (int pass = 0; pass < kPasses; ++pass) s_.rate.execute(memory_.data() + pass * stride_);
-    if (!all_are_rates()) return kNaN;
-    const std::uint32_t* const slots = s_.rate.outputs(0).data();
-    for (int pass = 0; pass < kPasses; ++pass) {
-      const int first = pass * Ops::kSize;
-      const Lane weight = Ops::load(data_.weights + first);
-      for (int k = 0; k < kSize; ++k) {
-        Ops::store(weight * at(pass, slots[k]), data_.increments + k * kLanes + first);
-      }
-      double* y = data_.algebraic + first;
-      for (const std::uint32_t slot : s_.rate.outputs(1)) {
-        Ops::store(at(pass, slot), y);
-        y += kLanes;
-      }
-    }
-    return moved;
-  }
-
-  const TextSystem& s_;
-  const StageData& data_;
-  std::size_t stride_;
-  alignas(64) std::array<std::byte, kRoom> memory_;
-};
-
 template <int dof>
 StageReport iterate(const void* opaque,
                     const StageData& data,
                     const IterationLimits<double>& limits) {
-  const TextSystem& s = system_of(opaque);
-  if (s.linear && TapeIteration<dof>::fits(s)) return TapeIteration<dof>(s, data).run(limits);
   return iterate_with<2 * dof, kLanes>(
       [&](double* z_dot) { return rates(opaque, data.time, data.stages, data.algebraic, z_dot); },
       data,
@@ -390,23 +296,9 @@ void branch(const void* opaque, double* y) {
   std::copy(branch.begin(), branch.end(), y);
 }
 
-std::vector<int> slots_of_rate(const TextSystem& system) {
-  std::vector<int> slots(2 * system.dof + 1, -1);
-  for (const Tape::Run& run : system.rate.inputs()) {
-    for (std::uint32_t i = 0; i < run.count; ++i) {
-      const int slot = static_cast<int>(run.slot + i);
-      if (run.group == 0) slots[2 * system.dof] = slot;
-      if (run.group == 1) slots[run.row + i] = slot;
-      if (run.group == 2) slots[system.dof + run.row + i] = slot;
-    }
-  }
-  return slots;
-}
-
 }  // namespace
 
 void connect_calls(TextSystem& system) {
-  system.rate_slots = slots_of_rate(system);
   using Iterate = StageReport (*)(const void*, const StageData&, const IterationLimits<double>&);
   constexpr std::array<Iterate, kMostDof> kIterate{iterate<1>,
                                                    iterate<2>,

@@ -32,11 +32,10 @@ struct TextSystem {
   Tape rate;      // z', y, and values that must be positive; not linear: z' from y
   Tape jacobian;  // dz'/dz row by row, and the same; not linear: H_yz, H_zz, m x 2n and 2n x 2n
   std::vector<RateStatus> rate_checks;
-  std::vector<int> rate_slots;  // of q, p and t in the memory of `rate`; -1: of no use there
-  Tape equations;               // H_y, not linear only
-  Tape guess;                   // of y, not linear only
-  Tape hessian;                 // H_y, and H_yy row by row; of all kinds but velocity constraints
-  Tape point;                   // H, H_t, the square of the speed, g
+  Tape equations;  // H_y, not linear only
+  Tape guess;      // of y, not linear only
+  Tape hessian;    // H_y, and H_yy row by row; of all kinds but velocity constraints
+  Tape point;      // H, H_t, the square of the speed, g
   Tape lambda;
   std::vector<RateStatus> lambda_checks;
   Tape projected;  // the admissible velocity, and g at the one given
