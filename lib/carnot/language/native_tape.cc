@@ -8,13 +8,15 @@
 #include <array>
 #include <bit>
 #include <cassert>
+#include <cstdint>
 #include <exception>
+#include <limits>
 #include <map>
 #include <type_traits>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "carnot/language/native_steps.h"
 #include "carnot/language/tape_machine.h"
 
 namespace carnot::language {
@@ -43,101 +45,11 @@ struct Machine<xsimd::batch<double, xsimd::fma3<xsimd::avx2>>> {
 };
 #endif
 
-constexpr int kNone = -1;
+constexpr int kNone = NativeOperand::kNoValue;
 
-// The steps with names for values instead of places: a slot holds one value after the other.
-class Values {
- public:
-  struct Step {
-    std::array<int, 3> operands{kNone, kNone, kNone};  // kNone: a constant, or not there
-    int result = kNone;
-    int second = kNone;
-  };
-
-  // A row of a group.
-  struct Row {
-    std::uint32_t group = 0;
-    std::uint32_t row = 0;
-  };
-
-  explicit Values(const TapeParts& tape) {
-    for (const TapeRows& rows : tape.inputs) {
-      for (std::uint32_t i = 0; i < rows.count; ++i) {
-        here_[rows.slot + i] = add(rows.slot + i);
-        inputs_.push_back({rows.group, rows.row + i});
-      }
-    }
-    int last = kNone;
-    for (const TapeStep& s : tape.steps) {
-      Step step;
-      const std::array operands{s.a, s.b, s.c};
-      for (std::size_t i = 0; i < operands.size(); ++i) {
-        if (operands[i].where == TapeOperand::Where::kResult) step.operands[i] = last;
-        if (operands[i].where == TapeOperand::Where::kSlot)
-          step.operands[i] = here_.at(operands[i].slot);
-        if (step.operands[i] != kNone) {
-          uses_[step.operands[i]].push_back(static_cast<int>(steps_.size()));
-        }
-      }
-      if (s.operation == TapeOperation::kSinCos) step.second = here_[s.second] = add(s.second);
-      step.result = add(s.to);
-      if (s.stored) here_[s.to] = step.result;
-      last = step.result;
-      steps_.push_back(step);
-    }
-    wanted_.resize(uses_.size());
-    for (std::uint32_t group = 0; group < tape.outputs.size(); ++group) {
-      for (std::uint32_t row = 0; row < tape.outputs[group].size(); ++row) {
-        wanted_[here_.at(tape.outputs[group][row])].push_back({group, row});
-      }
-    }
-  }
-
-  [[nodiscard]] int count() const { return static_cast<int>(uses_.size()); }
-  [[nodiscard]] const Step& step(int i) const { return steps_[i]; }
-  [[nodiscard]] std::uint32_t slot(int value) const { return slots_[value]; }
-  // The first values are the inputs: where they are.
-  [[nodiscard]] std::span<const Row> inputs() const { return inputs_; }
-  // Where it is wanted as a result.
-  [[nodiscard]] std::span<const Row> wanted(int value) const { return wanted_[value]; }
-  // The first step after step i that needs it; a large number where none does.
-  [[nodiscard]] int next_use(int value, int i) const {
-    const std::vector<int>& uses = uses_[value];
-    const auto next = std::upper_bound(uses.begin(), uses.end(), i);
-    return next == uses.end() ? kNever : *next;
-  }
-  static constexpr int kNever = std::numeric_limits<int>::max();
-
- private:
-  int add(std::uint32_t slot) {
-    uses_.emplace_back();
-    slots_.push_back(slot);
-    return count() - 1;
-  }
-
-  std::vector<Step> steps_;
-  std::vector<std::vector<int>> uses_;  // the steps that need a value, in order
-  std::vector<std::uint32_t> slots_;
-  std::vector<Row> inputs_;
-  std::vector<std::vector<Row>> wanted_;
-  std::unordered_map<std::uint32_t, int> here_;  // what a slot holds
-};
-
-bool is_called(const TapeStep& s) {
-  switch (s.operation) {
-    case TapeOperation::kSin:
-    case TapeOperation::kCos:
-    case TapeOperation::kSinCos:
-    case TapeOperation::kFunction:
-    case TapeOperation::kAtan2:
-      return true;
-    default:
-      return false;
-  }
-}
-
-// Writes the code of a tape, a NativeTape::Code. rbx is `memory`, r12 `in` and r13 `out`. Two
-// registers add up 0 x for the results x that are wanted: zero where all of them are finite.
+// Writes the code of a tape, a NativeTape::Code. rbx is `memory`, r12 `in`, r13 `out`, and r14
+// counts the bytes of a row that are done, where it takes more than one register. Two registers add
+// up 0 x for the results x that are wanted: zero where all of them are finite.
 template <class V>
 class Writer {
  public:
@@ -149,30 +61,42 @@ class Writer {
         calls_(calls),
         code_(code),
         values_(tape),
+        slots_(tape.slots + kSums),
         register_of_(values_.count(), kNone),
         in_slot_(values_.count(), false) {
     value_in_.fill(kNone);
+    for (int value = 0; value < values_.count(); ++value) slot_of_.push_back(values_.slot(value));
   }
 
   void write() {
-    const std::array kept{code_.rbx, code_.r12, code_.r13};  // and the stack is aligned for calls
+    // As many that the stack is aligned for calls.
+    const std::array kept{code_.rbx, code_.r12, code_.r13, code_.r14, code_.r15};
     for (const auto& x : kept) code_.push(x);
     code_.mov(code_.r12, code_.rdi);
     code_.mov(code_.r13, code_.rsi);
     code_.mov(code_.rbx, code_.rdx);
+    code_.xor_(code_.r14, code_.r14);
     clear_sums();
+    Xbyak::Label pass;
+    code_.L(pass);
     for (int value = 0; value < std::ssize(values_.inputs()); ++value) {
       if (values_.wanted(value).empty()) continue;
       code_.vmovupd(reg(0), home_of(value));
       deliver(value, 0);
     }
     std::size_t calls = 0;
-    for (step_ = 0; step_ < std::ssize(tape_.steps); ++step_) {
-      if (is_called(tape_.steps[step_])) {
-        call_function(calls_[calls++]);
-      } else {
-        compute();
+    for (const NativeStep& s : values_.steps()) {
+      if (s.operation == NativeOperation::kCall) {
+        call_function(s, calls_[calls++]);
+      } else if (!values_.wanted(s.result).empty() || !ends(s.result)) {
+        compute(s);
       }
+      ++step_;
+    }
+    if constexpr (kPasses > 1) {
+      code_.add(code_.r14, kWidth);
+      code_.cmp(code_.r14, kRow);
+      code_.jb(pass, Xbyak::CodeGenerator::T_NEAR);
     }
     return_whether_finite();
     code_.vzeroupper();
@@ -185,13 +109,17 @@ class Writer {
     }
     code_.ready(Xbyak::CodeGenerator::PROTECT_RE);
   }
+  // What the code needs of memory.
+  [[nodiscard]] std::size_t bytes() const { return static_cast<std::size_t>(slots_) * kWidth; }
 
  private:
   using Register = typename Machine<V>::Register;
+  static constexpr bool kIsZmm = std::is_same_v<Register, Xbyak::Zmm>;
   static constexpr int kWidth = sizeof(V);
   static constexpr int kLanes = kWidth / sizeof(double);
   static constexpr int kRow = kTapeLanes * sizeof(double);
-  static constexpr int kSums = NativeTape::kSums;
+  static constexpr int kPasses = kTapeLanes / kLanes;  // registers for a row
+  static constexpr int kSums = 2;
   static constexpr int kFree = Machine<V>::kRegisters - kSums - 1;  // for values
   static constexpr int kZero = kFree + kSums;
 
@@ -204,15 +132,31 @@ class Writer {
   };
 
   [[nodiscard]] static Register reg(int index) { return Register(index); }
-  Xbyak::Address at_slot(std::uint32_t slot) {
-    return code_.ptr[code_.rbx + static_cast<int>(slot * kWidth)];
+  Xbyak::Address at_slot(int slot) { return code_.ptr[code_.rbx + slot * kWidth]; }
+  // Values that the tape has no slot for get one when they need it.
+  Xbyak::Address slot_of(int value) {
+    if (slot_of_[value] == kNone) slot_of_[value] = slots_++;
+    return at_slot(slot_of_[value]);
+  }
+  [[nodiscard]] bool ends(int value) const {
+    return values_.next_use(value, step_) == NativeSteps::kNever;
+  }
+  Xbyak::Address at_row(const Xbyak::Reg64& group, std::uint32_t row) {
+    const auto offset = static_cast<int>(row * kRow);
+    return kPasses > 1 ? code_.ptr[group + code_.r14 + offset] : code_.ptr[group + offset];
+  }
+  // Lets a register point to a group, if it does not yet.
+  void point(const Xbyak::Reg64& to, const Xbyak::Reg64& groups, std::uint32_t group, int& now) {
+    if (now == static_cast<int>(group)) return;
+    now = static_cast<int>(group);
+    code_.mov(to, code_.ptr[groups + now * static_cast<int>(sizeof(double*))]);
   }
   // Where a value that is in no register is. That of an input takes an instruction, and rax.
   Xbyak::Address home_of(int value) {
-    if (value >= std::ssize(values_.inputs())) return at_slot(values_.slot(value));
+    if (!values_.is_input(value)) return slot_of(value);
     const auto [group, row] = values_.inputs()[value];
-    code_.mov(code_.rax, code_.ptr[code_.r12 + static_cast<int>(group * sizeof(double*))]);
-    return code_.ptr[code_.rax + static_cast<int>(row * kRow)];
+    point(code_.rax, code_.r12, group, in_rax_);
+    return at_row(code_.rax, row);
   }
   Xbyak::Address constant_at(double x) {
     const auto [place, is_new] =
@@ -226,9 +170,9 @@ class Writer {
     if (in_slot_[value]) return;
     if (register_of_[value] == kNone) {  // an input
       code_.vmovupd(reg(kZero), home_of(value));
-      code_.vmovupd(at_slot(values_.slot(value)), reg(kZero));
+      code_.vmovupd(slot_of(value), reg(kZero));
     } else {
-      code_.vmovupd(at_slot(values_.slot(value)), reg(register_of_[value]));
+      code_.vmovupd(slot_of(value), reg(register_of_[value]));
     }
     in_slot_[value] = true;
   }
@@ -252,10 +196,10 @@ class Writer {
   void deliver(int value, int index) {
     for (const auto& [group, row] : values_.wanted(value)) {
       Xbyak::Label next;
-      code_.mov(code_.rcx, code_.ptr[code_.r13 + static_cast<int>(group * sizeof(double*))]);
+      point(code_.rcx, code_.r13, group, in_rcx_);
       code_.test(code_.rcx, code_.rcx);
       code_.jz(next);
-      code_.vmovupd(code_.ptr[code_.rcx + static_cast<int>(row * kRow)], reg(index));
+      code_.vmovupd(at_row(code_.rcx, row), reg(index));
       code_.vfmadd231pd(reg(kFree + delivered_++ % kSums), reg(kZero), reg(index));
       code_.L(next);
     }
@@ -263,7 +207,7 @@ class Writer {
   void return_whether_finite() {
     const Register sum = reg(kFree);
     code_.vaddpd(sum, sum, reg(kFree + 1));
-    if constexpr (std::is_same_v<Register, Xbyak::Zmm>) {
+    if constexpr (kIsZmm) {
       code_.vcmpeqpd(code_.k1, sum, reg(kZero));
       code_.kmovw(code_.eax, code_.k1);
     } else {
@@ -294,27 +238,34 @@ class Writer {
       }
     }
     const int left = value_in_[best];
-    if (latest != Values::kNever && left >= std::ssize(values_.inputs())) store(left);
+    if (latest != NativeSteps::kNever && !values_.is_input(left)) store(left);
     release(best);
     pinned_[best] = true;
     return best;
   }
 
-  Place place_of(const TapeOperand& operand, int value) {
+  Place place_of(const NativeOperand& operand) {
     Place place;
-    if (value == kNone) {
+    const int value = operand.value;
+    if (!operand.is_value()) {
       place.address = constant_at(operand.constant);
       place.ends = true;
       return place;
     }
     place.index = register_of_[value];
-    place.ends = values_.next_use(value, step_) == Values::kNever;
+    place.ends = ends(value);
     if (!place.is_register()) {
-      // An address that takes an instruction does not wait for the next one of its kind.
-      const bool is_input = value < std::ssize(values_.inputs());
+      // The address of an input is in a register that the next one takes.
       place.address = home_of(value);
+      const bool is_input = values_.is_input(value);
       if (is_input || !place.ends) load(place, is_input && place.ends ? kNone : value);
     }
+    return place;
+  }
+  // The same in a register.
+  Place register_with(const NativeOperand& operand) {
+    Place place = place_of(operand);
+    if (!place.is_register()) load(place, kNone);
     return place;
   }
   void load(Place& place, int value) {
@@ -339,25 +290,29 @@ class Writer {
     return take();
   }
 
-  int binary(const TapeStep& s, const Values::Step& v) {
-    Place a = place_of(s.a, v.operands[0]);
-    Place b = place_of(s.b, v.operands[1]);
+  static bool are_same(const NativeOperand& a, const NativeOperand& b) {
+    return a.is_value() && a.value == b.value;
+  }
+
+  int binary(const NativeStep& s) {
+    Place a = place_of(s.operands[0]);
+    Place b = place_of(s.operands[1]);
     const bool commutes =
-        s.operation == TapeOperation::kAdd || s.operation == TapeOperation::kMultiply;
+        s.operation == NativeOperation::kAdd || s.operation == NativeOperation::kMultiply;
     if (commutes && !a.is_register() && b.is_register()) std::swap(a, b);
     if (!a.is_register()) {
       load(a, kNone);
-      if (v.operands[0] != kNone && v.operands[0] == v.operands[1]) b = a;
+      if (are_same(s.operands[0], s.operands[1])) b = a;
     }
     const int to = target(a, b);
     with(
         [&](const auto& x, const auto& y, const auto& z) {
           switch (s.operation) {
-            case TapeOperation::kAdd:
+            case NativeOperation::kAdd:
               return code_.vaddpd(x, y, z);
-            case TapeOperation::kSubtract:
+            case NativeOperation::kSubtract:
               return code_.vsubpd(x, y, z);
-            case TapeOperation::kMultiply:
+            case NativeOperation::kMultiply:
               return code_.vmulpd(x, y, z);
             default:
               return code_.vdivpd(x, y, z);
@@ -371,16 +326,15 @@ class Writer {
 
   // c + a b or c - a b. The instructions are named by the order of their three operands, and leave
   // the result in the first; only the last one may be in memory.
-  int fused(const TapeStep& s, const Values::Step& v) {
-    Place a = place_of(s.a, v.operands[0]);
-    Place b = place_of(s.b, v.operands[1]);
-    Place c = place_of(s.c, v.operands[2]);
-    const bool minus = s.operation == TapeOperation::kNegated;
+  int fused(const NativeStep& s) {
+    Place a = place_of(s.operands[0]);
+    Place b = place_of(s.operands[1]);
+    Place c = place_of(s.operands[2]);
+    const bool minus = s.operation == NativeOperation::kNegated;
     if (!a.is_register()) std::swap(a, b);
     if (!a.is_register()) {
-      const bool square = v.operands[0] != kNone && v.operands[0] == v.operands[1];
       load(a, kNone);
-      if (square) b = a;
+      if (are_same(s.operands[0], s.operands[1])) b = a;
     }
     if (!b.is_register() && !c.is_register()) load(c, kNone);
     if (c.is_register() && !c.ends) {
@@ -425,42 +379,95 @@ class Writer {
     return to;
   }
 
-  int unary(const TapeStep& s, const Values::Step& v) {
-    const Place a = place_of(s.a, v.operands[0]);
+  int unary(const NativeStep& s) {
+    const Place a = place_of(s.operands[0]);
     const int to = a.is_register() && a.ends ? a.index : take();
     const auto emit = [&](const auto& from) {
-      s.operation == TapeOperation::kSqrt ? code_.vsqrtpd(reg(to), from)
-                                          : code_.vmovupd(reg(to), from);
+      s.operation == NativeOperation::kSqrt ? code_.vsqrtpd(reg(to), from)
+                                            : code_.vmovupd(reg(to), from);
     };
     a.is_register() ? emit(reg(a.index)) : emit(a.address);
     return to;
   }
 
-  void compute() {
-    const TapeStep& s = tape_.steps[step_];
-    const Values::Step& v = values_.step(step_);
+  static double from_bits(std::uint64_t bits) { return std::bit_cast<double>(bits); }
+  static constexpr std::uint64_t kSign = std::uint64_t{1} << 63;
+
+  // pack_lane::nan_beyond() and pack_lane::turned().
+  int nan_beyond(const NativeStep& s) {
+    const int r = register_with(s.operands[0]).index;
+    const int x = register_with(s.operands[1]).index;
+    const int to = take();
+    const int size = take();
+    constexpr int kAtMost = 2;  // of comparisons
+    code_.vandpd(reg(size), reg(x), constant_at(from_bits(~kSign)));
+    if constexpr (kIsZmm) {
+      code_.vcmppd(code_.k1, reg(size), constant_at(pack_lane::kLargestAngle), kAtMost);
+      code_.vmovupd(reg(to), constant_at(std::numeric_limits<double>::quiet_NaN()));
+      code_.vmovapd(reg(to) | code_.k1, reg(r));
+    } else {
+      code_.vcmppd(reg(size), reg(size), constant_at(pack_lane::kLargestAngle), kAtMost);
+      code_.vmovupd(reg(to), constant_at(std::numeric_limits<double>::quiet_NaN()));
+      code_.vblendvpd(reg(to), reg(to), reg(r), reg(size));
+    }
+    return to;
+  }
+  int turned(const NativeStep& s) {
+    const bool sine = s.operation == NativeOperation::kTurnedSin;
+    const int even = register_with(s.operands[sine ? 0 : 1]).index;
+    const int odd = register_with(s.operands[sine ? 1 : 0]).index;
+    const int shifted = register_with(s.operands[2]).index;
+    const int to = take();
+    const int sign = take();
+    if constexpr (kIsZmm) {
+      code_.vptestmq(code_.k1, reg(shifted), constant_at(from_bits(1)));
+      code_.vmovapd(reg(to), reg(even));
+      code_.vmovapd(reg(to) | code_.k1, reg(odd));
+    } else {
+      code_.vpsllq(reg(sign), reg(shifted), 63);
+      code_.vblendvpd(reg(to), reg(even), reg(odd), reg(sign));
+    }
+    int quadrant = shifted;
+    if (!sine) {
+      code_.vpaddq(reg(sign), reg(shifted), constant_at(from_bits(1)));
+      quadrant = sign;
+    }
+    code_.vpsllq(reg(sign), reg(quadrant), 62);
+    code_.vandpd(reg(sign), reg(sign), constant_at(from_bits(kSign)));
+    code_.vxorpd(reg(to), reg(to), reg(sign));
+    return to;
+  }
+
+  void compute(const NativeStep& s) {
     pinned_.fill(false);
-    for (const int value : v.operands) {
-      if (value != kNone && register_of_[value] != kNone) pinned_[register_of_[value]] = true;
+    for (const NativeOperand& x : s.operands) {
+      if (x.is_value() && register_of_[x.value] != kNone) pinned_[register_of_[x.value]] = true;
     }
     int to = kNone;
     switch (s.operation) {
-      case TapeOperation::kFused:
-      case TapeOperation::kNegated:
-        to = fused(s, v);
+      case NativeOperation::kFused:
+      case NativeOperation::kNegated:
+        to = fused(s);
         break;
-      case TapeOperation::kSqrt:
-      case TapeOperation::kCopy:
-        to = unary(s, v);
+      case NativeOperation::kSqrt:
+      case NativeOperation::kCopy:
+        to = unary(s);
+        break;
+      case NativeOperation::kNanBeyond:
+        to = nan_beyond(s);
+        break;
+      case NativeOperation::kTurnedSin:
+      case NativeOperation::kTurnedCos:
+        to = turned(s);
         break;
       default:
-        to = binary(s, v);
+        to = binary(s);
     }
-    for (const int value : v.operands) {
-      if (value == kNone || register_of_[value] == kNone) continue;
-      if (values_.next_use(value, step_) == Values::kNever) release(register_of_[value]);
+    for (const NativeOperand& x : s.operands) {
+      if (!x.is_value() || register_of_[x.value] == kNone) continue;
+      if (ends(x.value)) release(register_of_[x.value]);
     }
-    finish(v.result, to);
+    finish(s.result, to);
   }
 
   void finish(int result, int index) {
@@ -470,30 +477,24 @@ class Writer {
 
   // The interpreter's function finds its operands where the interpreter would have left them. It
   // keeps no register.
-  void call_function(const TapeInstruction& instruction) {
-    const TapeStep& s = tape_.steps[step_];
-    const Values::Step& v = values_.step(step_);
-    const std::array operands{s.a, s.b, s.c};
+  void call_function(const NativeStep& s, const TapeInstruction& instruction) {
+    const std::array operands{s.called->a, s.called->b, s.called->c};
     int passed = kNone;
     for (std::size_t i = 0; i < operands.size(); ++i) {
-      if (operands[i].where == TapeOperand::Where::kSlot) store(v.operands[i]);
-      if (operands[i].where == TapeOperand::Where::kResult) passed = v.operands[i];
+      if (operands[i].where == TapeOperand::Where::kSlot) store(s.operands[i].value);
+      if (operands[i].where == TapeOperand::Where::kResult) passed = s.operands[i].value;
     }
-    for (int index = 0; index < kFree; ++index) {
-      const int value = value_in_[index];
-      if (value >= std::ssize(values_.inputs()) &&
-          values_.next_use(value, step_) != Values::kNever) {
-        store(value);
-      }
+    for (const int value : value_in_) {
+      if (value != kNone && !values_.is_input(value) && !ends(value)) store(value);
     }
     if (passed != kNone) {
       if (register_of_[passed] == kNone) {
-        code_.vmovupd(reg(0), at_slot(values_.slot(passed)));
+        code_.vmovupd(reg(0), slot_of(passed));
       } else if (register_of_[passed] != 0) {
         code_.vmovapd(reg(0), reg(register_of_[passed]));
       }
     }
-    const bool has_sums = delivered_ > 0;
+    const bool has_sums = kPasses > 1 || delivered_ > 0;
     for (int i = 0; has_sums && i < kSums; ++i) {
       code_.vmovupd(at_slot(tape_.slots + i), reg(kFree + i));
     }
@@ -501,32 +502,29 @@ class Writer {
     code_.mov(code_.rsi, code_.rbx);
     code_.mov(code_.rax, reinterpret_cast<std::uintptr_t>(instruction.handler));
     code_.call(code_.rax);
+    in_rax_ = in_rcx_ = kNone;
     for (int index = 0; index < kFree; ++index) release(index);
     clear_sums();
     for (int i = 0; has_sums && i < kSums; ++i) {
       code_.vmovupd(reg(kFree + i), at_slot(tape_.slots + i));
     }
-    in_slot_[v.result] = s.stored;
-    finish(v.result, 0);
-    if (v.second == kNone) return;
-    in_slot_[v.second] = true;
-    if (values_.wanted(v.second).empty()) return;
-    pinned_.fill(false);
-    pinned_[0] = true;
-    const int index = take();
-    code_.vmovupd(reg(index), at_slot(values_.slot(v.second)));
-    finish(v.second, index);
+    in_slot_[s.result] = s.called->stored;
+    finish(s.result, 0);
   }
 
   const TapeParts& tape_;
   const std::vector<TapeInstruction>& calls_;
   Xbyak::CodeGenerator& code_;
-  const Values values_;
+  const NativeSteps values_;
   int step_ = 0;
+  int slots_;
+  std::vector<int> slot_of_;
   std::vector<int> register_of_;
   std::vector<bool> in_slot_;  // whether its slot holds it
   std::array<int, kFree> value_in_{};
   std::array<bool, kFree> pinned_{};  // by an operand of this step
+  int in_rax_ = kNone;  // the group that rax points to, and rcx
+  int in_rcx_ = kNone;
   int delivered_ = 0;                 // results so far
   std::vector<double> constants_;
   std::map<std::uint64_t, int> places_;  // of the constants' bits
@@ -538,24 +536,29 @@ class MemoryOf : public NativeTape::Memory {
  public:
   explicit MemoryOf(const TapeParts& tape)
       : calls_(calls_of(tape.steps)), code_(kPage, Xbyak::AutoGrow) {
-    Writer<V>(tape, calls_, code_).write();
+    Writer<V> writer(tape, calls_, code_);
+    writer.write();
+    bytes_ = writer.bytes();
   }
   [[nodiscard]] NativeTape::Code code() const override { return code_.getCode<NativeTape::Code>(); }
+  [[nodiscard]] std::size_t bytes() const override { return bytes_; }
 
  private:
   static constexpr std::size_t kPage = 4096;
 
   static std::vector<TapeInstruction> calls_of(std::span<const TapeStep> steps) {
+    using Interpreter = TapeMachine<V, false>;
     std::vector<TapeInstruction> calls;
     for (const TapeStep& s : steps) {
-      if (!is_called(s)) continue;
-      calls.push_back(TapeMachine<V, false>::instruction(s, TapeMachine<V, false>::function(s)));
+      if (s.operation != TapeOperation::kFunction && s.operation != TapeOperation::kAtan2) continue;
+      calls.push_back(Interpreter::instruction(s, Interpreter::function(s)));
     }
     return calls;
   }
 
   const std::vector<TapeInstruction> calls_;  // whose places are in the code
   Xbyak::CodeGenerator code_;
+  std::size_t bytes_ = 0;
 };
 
 std::unique_ptr<const NativeTape::Memory> memory_of(const TapeParts& tape) {
@@ -589,7 +592,9 @@ namespace carnot::language {
 NativeTape::Code NativeTape::make(const TapeParts& parts) {
   std::call_once(once_, [&] {
     memory_ = memory_of(parts);
-    if (memory_) code_.store(memory_->code(), std::memory_order_release);
+    if (!memory_) return;
+    bytes_ = memory_->bytes();
+    code_.store(memory_->code(), std::memory_order_release);
   });
   return code();
 }

@@ -8,9 +8,9 @@
 //
 // Registers are given out in one pass over the steps. Where none is left, the value that is needed
 // again last gives up its register (Belady 1966, which for code without branches is close to the
-// least number of loads), and goes to the slot that the tape has for it. Sines, cosines and the
-// rest of the functions are called, by the interpreter's own code; around a call values live in
-// their slots.
+// least number of loads), and goes to the slot that the tape has for it. Sines and cosines are
+// written out (native_steps.h); the other functions are called, by the interpreter's own code, and
+// around a call values live in their slots.
 //
 // Only x86-64 with AVX-512, or AVX2 and FMA, has such code, and only where the system lets a
 // program make some. Elsewhere the interpreter does the same.
@@ -41,14 +41,12 @@ struct TapeParts {
 // Of one tape. Safe to use by many threads.
 class NativeTape {
  public:
-  // Tape::run_rows() at as many points as a register holds, in rows of kTapeLanes numbers. `memory`
-  // has slots_for() registers.
+  // Tape::run_rows(), with `memory` of at least bytes().
   using Code = bool (*)(const double* const* in, double* const* out, std::byte* memory);
-  static constexpr int slots_for(int slots) { return slots + kSums; }
-  static constexpr int kSums = 2;  // see native_tape.cc
 
   // Null before it is made, and where there is none.
   [[nodiscard]] Code code() const { return code_.load(std::memory_order_acquire); }
+  [[nodiscard]] std::size_t bytes() const { return bytes_; }
   // Makes it, once: most tapes of a scene are never run on many points. Takes about 0.2 us a step,
   // and 20 us.
   Code make(const TapeParts& parts);
@@ -58,10 +56,12 @@ class NativeTape {
    public:
     virtual ~Memory() = default;
     [[nodiscard]] virtual Code code() const = 0;
+    [[nodiscard]] virtual std::size_t bytes() const = 0;
   };
 
  private:
   std::once_flag once_;
+  std::size_t bytes_ = 0;
   std::atomic<Code> code_ = nullptr;
   std::unique_ptr<const Memory> memory_;
 };

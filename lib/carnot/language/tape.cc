@@ -440,35 +440,14 @@ bool Tape::run(std::span<const double* const> in, std::span<double* const> out) 
       *this, [&](std::byte* memory) { Machine::execute(single_.data(), memory); }, in, out);
 }
 
-bool Tape::run_rows(std::span<const double* const> in, std::span<double* const> out) const {
+bool Tape::run_rows_at_length(std::span<const double* const> in,
+                              std::span<double* const> out) const {
+  if (const NativeTape::Code code = native_->make({steps_, in_, out_, slots_})) {
+    return code(in.data(), out.data(), tape_memory(native_->bytes()));
+  }
   using Machine = TapeMachine<WideNumber>;
-  NativeTape::Code code = native_->code();
-  if (code == nullptr) code = native_->make({steps_, in_, out_, slots_});
-  if (code == nullptr) {
-    return Machine::run<kTapeLanes>(
-        *this, [&](std::byte* memory) { Machine::execute(wide_.data(), memory); }, in, out);
-  }
-  constexpr std::size_t kSmall = 16384;  // bytes that a call may take of the stack
-  alignas(64) std::array<std::byte, kSmall> small;
-  const std::size_t bytes = NativeTape::slots_for(slots_) * sizeof(WideNumber);
-  std::byte* const memory = bytes <= kSmall ? small.data() : tape_memory(bytes);
-  constexpr int kWide = pack_lane::Ops<WideNumber>::kSize;
-  if constexpr (kWide == kTapeLanes) {
-    return code(in.data(), out.data(), memory);
-  } else {
-    constexpr std::size_t kMostGroups = 8;
-    assert(in.size() <= kMostGroups && out.size() <= kMostGroups);
-    std::array<const double*, kMostGroups> from{};
-    std::array<double*, kMostGroups> to{};
-    bool finite = true;
-    for (int first = 0; first < kTapeLanes; first += kWide) {
-      const auto moved = [&](auto* rows) { return rows == nullptr ? nullptr : rows + first; };
-      std::transform(in.begin(), in.end(), from.begin(), moved);
-      std::transform(out.begin(), out.end(), to.begin(), moved);
-      finite = code(from.data(), to.data(), memory) && finite;
-    }
-    return finite;
-  }
+  return Machine::run<kTapeLanes>(
+      *this, [&](std::byte* memory) { Machine::execute(wide_.data(), memory); }, in, out);
 }
 
 }  // namespace carnot::language

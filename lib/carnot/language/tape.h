@@ -104,13 +104,24 @@ class Tape {
   // finite.
   bool run(std::span<const double* const> in, std::span<double* const> out) const;
   // At kTapeLanes points side by side: number k of a group is row k of kTapeLanes numbers.
-  bool run_rows(std::span<const double* const> in, std::span<double* const> out) const;
+  bool run_rows(std::span<const double* const> in, std::span<double* const> out) const {
+    const NativeTape::Code code = native_->code();
+    if (code == nullptr || native_->bytes() > kRoom) return run_rows_at_length(in, out);
+    alignas(64) std::array<std::byte, kRoom> memory;
+    return code(in.data(), out.data(), memory.data());
+  }
 
   // How many steps there are, and slots.
   [[nodiscard]] int steps() const { return static_cast<int>(steps_.size()); }
   [[nodiscard]] int slots() const { return slots_; }
 
+  // Bytes that a run may take of the stack.
+  static constexpr std::size_t kRoom = 16384;
+
  private:
+  // Makes machine code, interprets, or takes more memory.
+  bool run_rows_at_length(std::span<const double* const> in, std::span<double* const> out) const;
+
   friend class TapeBuilder;
   template <class V, bool tail_calls>
   friend struct TapeMachine;

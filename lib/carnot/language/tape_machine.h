@@ -122,11 +122,7 @@ struct TapeMachine {
       if constexpr (std::is_same_v<V, double>) {
         return stumpff<k>(a);
       } else {
-        using P = Pack<Ops::kSize, V>;
-        alignas(64) std::array<double, Ops::kSize> numbers;
-        Ops::store(a, numbers.data());
-        stumpff<k>(P::load(numbers.data())).store(numbers.data());
-        return Ops::load(numbers.data());
+        return stumpff<k>(Pack<Ops::kSize, V>::of_part(a)).part(0);
       }
     }
   };
@@ -284,10 +280,9 @@ struct TapeMachine {
                   const Execute& execute,
                   std::span<const double* const> in,
                   std::span<double* const> out) {
-    constexpr std::size_t kSmall = 16384;  // bytes that a call may take of the stack
-    alignas(64) std::array<std::byte, kSmall> small;
+    alignas(64) std::array<std::byte, Tape::kRoom> small;
     const std::size_t bytes = tape.slots_ * sizeof(Register);
-    std::byte* const memory = bytes <= kSmall ? small.data() : tape_memory(bytes);
+    std::byte* const memory = bytes <= Tape::kRoom ? small.data() : tape_memory(bytes);
     // Two sums, so that the additions need not wait for each other.
     V even(0.0);
     V odd(0.0);

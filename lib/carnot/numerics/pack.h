@@ -104,10 +104,31 @@ struct SinCos {
 // Beyond this the reduction below loses digits; those arguments give NaN.
 inline constexpr double kLargestAngle = 1e6;
 
+// r, or NaN in the lanes where |x| is beyond that.
+template <class Lane>
+[[gnu::always_inline]] inline Lane nan_beyond(const Lane& x, const Lane& r) {
+  const Lane nan(std::numeric_limits<double>::quiet_NaN());
+  return xsimd::select(xsimd::abs(x) <= Lane(kLargestAngle), r, nan);
+}
+
+// From sin r and cos r those of r + n pi/2, for n in the low bits of `shifted`: the quadrant n mod
+// 4 swaps them and sets signs.
+template <class Lane>
+[[gnu::always_inline]] inline SinCos<Lane> turned(const Lane& shifted, const SinCos<Lane>& of_r) {
+  using Integer = xsimd::batch<std::int64_t, typename Lane::arch_type>;
+  const Integer quadrant = xsimd::bitwise_cast<Integer>(shifted);
+  const auto even = xsimd::bitwise_cast<Lane>(quadrant & Integer(1)) == Lane(0.0);
+  const Integer sign(std::numeric_limits<std::int64_t>::min());
+  const Lane sine_sign = xsimd::bitwise_cast<Lane>((quadrant << 62) & sign);
+  const Lane cosine_sign = xsimd::bitwise_cast<Lane>(((quadrant + Integer(1)) << 62) & sign);
+  return {xsimd::select(even, of_r.sin, of_r.cos) ^ sine_sign,
+          xsimd::select(even, of_r.cos, of_r.sin) ^ cosine_sign};
+}
+
 // sin and cos to 2 ulp for |x| <= kLargestAngle. With x = n pi/2 + r, |r| <= pi/4, n is the nearest
 // integer (adding 1.5 2^52 rounds, and leaves n in the low bits), n pi/2 is subtracted in three
 // parts whose products with n are exact (Cody & Waite 1980), and polynomials in r^2 follow,
-// evaluated in pairs so that the chain is short. The quadrant n mod 4 swaps them and sets signs.
+// evaluated in pairs so that the chain is short.
 //
 // Errors far below an ulp matter where they are the same on every turn of an angle, because H then
 // drifts by them: with r rounded to double, by 1e-18 of H in each turn. So `rest`, which is what
@@ -119,16 +140,14 @@ template <class Lane>
     return {std::sin(x), std::cos(x)};
   } else {
     using xsimd::fma, xsimd::fnma;
-    using Integer = xsimd::batch<std::int64_t, typename Lane::arch_type>;
     const Lane round(6755399441055744.0);
     const Lane shifted = fma(x, Lane(0.63661977236758134308), round);
     const Lane n = shifted - round;
-    const Lane first = x - n * Lane(1.57079632673412561417e+00);
+    const Lane first = fnma(n, Lane(1.57079632673412561417e+00), x);
     const Lane second = n * Lane(6.07710050630396597660e-11);
-    Lane r = first - second;
-    const Lane rest = ((first - r) - second) - n * Lane(2.02226624879595063154e-21);
-    const Lane nan(std::numeric_limits<double>::quiet_NaN());
-    r = xsimd::select(xsimd::abs(x) <= Lane(kLargestAngle), r, nan);
+    const Lane unguarded = first - second;
+    const Lane rest = fnma(n, Lane(2.02226624879595063154e-21), (first - unguarded) - second);
+    const Lane r = nan_beyond(x, unguarded);
     const Lane z = r * r;
     const Lane z2 = z * z;
     const Lane z4 = z2 * z2;
@@ -142,12 +161,7 @@ template <class Lane>
     const Lane half = fnma(z, Lane(0.5), Lane(1));
     const Lane s = r + fma(fma(z4, s3, fma(z2, s1, s0)), z * r, rest * half);
     const Lane c = half + fma(z2, fma(z4, c2, fma(z2, c1, c0)), -(rest * r));
-    const Integer quadrant = xsimd::bitwise_cast<Integer>(shifted);
-    const auto even = xsimd::bitwise_cast<Lane>(quadrant & Integer(1)) == Lane(0.0);
-    const Integer sign(std::numeric_limits<std::int64_t>::min());
-    const Lane sine_sign = xsimd::bitwise_cast<Lane>((quadrant << 62) & sign);
-    const Lane cosine_sign = xsimd::bitwise_cast<Lane>(((quadrant + Integer(1)) << 62) & sign);
-    return {xsimd::select(even, s, c) ^ sine_sign, xsimd::select(even, c, s) ^ cosine_sign};
+    return turned(shifted, SinCos<Lane>{s, c});
   }
 }
 
@@ -278,9 +292,13 @@ class Pack {
 
   friend Mask isfinite(const Pack& a) { return abs(a) <= Pack(std::numeric_limits<double>::max()); }
 
- private:
+  // The registers.
   [[nodiscard]] Lane part(int i) const { return Ops::of(part_[i]); }
+  static Pack of_part(const Lane& x) requires(kParts == 1) {
+    return each([&](int) { return x; });
+  }
 
+ private:
   template <class F>
   [[gnu::always_inline]] static Pack each(F f) {
     Pack result;
