@@ -523,9 +523,9 @@ class Writer {
   std::vector<bool> in_slot_;  // whether its slot holds it
   std::array<int, kFree> value_in_{};
   std::array<bool, kFree> pinned_{};  // by an operand of this step
-  int in_rax_ = kNone;  // the group that rax points to, and rcx
+  int in_rax_ = kNone;                // the group that rax points to, and rcx
   int in_rcx_ = kNone;
-  int delivered_ = 0;                 // results so far
+  int delivered_ = 0;  // results so far
   std::vector<double> constants_;
   std::map<std::uint64_t, int> places_;  // of the constants' bits
   Xbyak::Label pool_;
