@@ -258,7 +258,8 @@ TEST(Invariances, OfUnitsInWarmStarts) {
   for (const Units units : {Units{1e-6, 1, 1}, Units{1e6, 1, 1}, Units{1e-3, 1e-5, 1e4}}) {
     const Answer answer = in(units);
     EXPECT_TRUE(answer.report.converged) << units.length << ' ' << answer.report.endpoint_error;
-    EXPECT_LE(answer.report.flows, known.report.flows + 1);
+    // The last corrections are of round-off.
+    EXPECT_LE(answer.report.flows, known.report.flows + 2);
     // |dq(T)/dp0|^-1 is about 100, and each is within the tolerance of 1e-10.
     for (int j = 0; j < 4; ++j) EXPECT_NEAR(answer.p0[j], known.p0[j], 4e-8);
   }

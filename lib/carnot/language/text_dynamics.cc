@@ -392,7 +392,7 @@ bool project_on_manifold(const void* opaque, double t, double* z) {
   if (!found) return false;
   std::copy_n(q.data(), n, z);
   Vector mu(l);
-  if (!s.forces.run(at(s, t, z), std::array<double*, 2>{mu.data(), nullptr})) return false;
+  if (!s.forces.run(at(s, t, z), std::array<double*, 1>{mu.data()})) return false;
   const Vector pushed = columns.lazyProduct(mu);
   for (int i = 0; i < n; ++i) z[n + i] += pushed[i];
   return true;
@@ -405,10 +405,9 @@ bool tangent_projector(const void* opaque, double t, const double* z, double* pr
   const int l = s.holonomic_count;
   Vector h(l);
   Matrix dh(n, l);
-  Vector mu(l);
   Matrix slopes(2 * n, l);
   s.holonomic.run(at(s, t, z), std::array<double*, 2>{h.data(), dh.data()});
-  if (!s.forces.run(at(s, t, z), std::array<double*, 2>{mu.data(), slopes.data()})) return false;
+  if (!s.slopes_of_forces.run(at(s, t, z), std::array<double*, 1>{slopes.data()})) return false;
   TextSquare gram(2 * l, 2 * l);
   Matrix columns = Matrix::Zero(2 * n, 2 * l);
   columns.topLeftCorner(n, l) = dh;

@@ -232,7 +232,8 @@ class TapeMaker {
     for (const Expression& mu : f_.holonomic_forces) {
       for (const int z : z_) slopes.push_back(graph_.derivative(mu, z));
     }
-    system_.forces = tape({f_.holonomic_forces, slopes});
+    system_.forces = tape({f_.holonomic_forces});
+    system_.slopes_of_forces = tape({slopes});
   }
 
   void transcription(const TranscriptionFormulas& t) {

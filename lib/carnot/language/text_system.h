@@ -48,9 +48,10 @@ struct TextSystem {
   Tape legendre;  // of H - p.v: derivatives by x = (p, y), first and second
   Tape held;      // the same where y in H is lambda, with |y - lambda|^2/2
   Tape chart;
-  Tape holonomic;  // h, and Dh row by row
-  Tape forces;     // mu, and its derivatives by z row by row
-  Tape entries;    // of the transcription
+  Tape holonomic;         // h, and Dh row by row
+  Tape forces;            // mu
+  Tape slopes_of_forces;  // its derivatives by z row by row
+  Tape entries;           // of the transcription
   Tape slopes;
   Tape lagrangian_hessian;
   int controls_count = 0;
