@@ -17,6 +17,26 @@ namespace {
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
 
+// a x and a'a by loops. Products of Eigen are summed in one order or another by how memory happens
+// to be aligned, and a result must not depend on that.
+template <class A>
+Vector product(const A& a, const Vector& x) {
+  Vector sum = Vector::Zero(a.rows());
+  for (Eigen::Index j = 0; j < a.cols(); ++j) {
+    for (Eigen::Index i = 0; i < a.rows(); ++i) sum[i] += a(i, j) * x[j];
+  }
+  return sum;
+}
+TextSquare gram_of(const Matrix& a) {
+  TextSquare gram = TextSquare::Zero(a.cols(), a.cols());
+  for (Eigen::Index j = 0; j < a.cols(); ++j) {
+    for (Eigen::Index k = 0; k < a.cols(); ++k) {
+      for (Eigen::Index i = 0; i < a.rows(); ++i) gram(j, k) += a(i, j) * a(i, k);
+    }
+  }
+  return gram;
+}
+
 Regularity regularity_of(const TextSquare& a) {
   const TextEquations::Factor factor(a);
   const int m = static_cast<int>(a.rows());
@@ -82,10 +102,10 @@ bool project(const TextSystem& s, const double& t, const double* q, Vector& v) {
       v = x;
       return true;
     }
-    const TextSquare gram = columns.transpose().lazyProduct(columns);
+    const TextSquare gram = gram_of(columns);
     const TextEquations::Factor factor(gram);
     if (!factor.regular()) return false;
-    const Vector step = -columns.lazyProduct(Vector(factor.solve(g)));
+    const Vector step = -product(columns, factor.solve(g));
     const double size = step.norm();
     x += step;
     const double few = resolution * x.norm();
@@ -159,7 +179,7 @@ bool linear_control_momentum(
   const TextPseudoInverse inverse(frame);
   const Vector wanted = v;
   const Vector w = inverse.solve(wanted - drift);
-  v = drift + frame.lazyProduct(w);
+  v = drift + product(frame, w);
   p = inverse.solve_transposed(w + linear);
   violated = (wanted - v).norm();
   if (violated > 0) violated /= std::max(wanted.norm(), drift.norm());
@@ -208,7 +228,7 @@ bool general_control_momentum(
   p = TextPseudoInverse(jacobian).solve_transposed(slope);
   violated = (wanted - v).norm();
   if (violated > 0) violated /= std::max(wanted.norm(), rest);
-  const Vector left = jacobian.transpose().lazyProduct(p) - slope;
+  const Vector left = product(jacobian.transpose(), p) - slope;
   return v.allFinite() &&
          left.norm() <= std::sqrt(std::numeric_limits<double>::epsilon()) * slope.norm();
 }
@@ -378,10 +398,10 @@ bool project_on_manifold(const void* opaque, double t, double* z) {
   bool found = false;
   for (int iteration = 0; iteration < kMaxIterations && !found; ++iteration) {
     evaluate();
-    const TextSquare gram = columns.transpose().lazyProduct(columns);
+    const TextSquare gram = gram_of(columns);
     const TextEquations::Factor factor(gram);
     if (!factor.regular()) return false;
-    const Vector correction = columns.lazyProduct(Vector(factor.solve(h)));
+    const Vector correction = product(columns, factor.solve(h));
     const double change = correction.cwiseAbs().maxCoeff();
     const double resolution = std::numeric_limits<double>::epsilon() * q.cwiseAbs().maxCoeff();
     found =
@@ -393,7 +413,7 @@ bool project_on_manifold(const void* opaque, double t, double* z) {
   std::copy_n(q.data(), n, z);
   Vector mu(l);
   if (!s.forces.run(at(s, t, z), std::array<double*, 1>{mu.data()})) return false;
-  const Vector pushed = columns.lazyProduct(mu);
+  const Vector pushed = product(columns, mu);
   for (int i = 0; i < n; ++i) z[n + i] += pushed[i];
   return true;
 }
@@ -412,14 +432,14 @@ bool tangent_projector(const void* opaque, double t, const double* z, double* pr
   Matrix columns = Matrix::Zero(2 * n, 2 * l);
   columns.topLeftCorner(n, l) = dh;
   columns.rightCols(l) = slopes;
-  gram = columns.transpose().lazyProduct(columns);
+  gram = gram_of(columns);
   const TextEquations::Factor factor(gram);
   if (!factor.regular()) return false;
   Eigen::Map<Matrix> p(projector, 2 * n, 2 * n);
   p.setIdentity();
   for (int i = 0; i < 2 * n; ++i) {
     const Vector row = columns.row(i).transpose();
-    p.col(i) -= columns.lazyProduct(Vector(factor.solve(row)));
+    p.col(i) -= product(columns, factor.solve(row));
   }
   return p.allFinite();
 }

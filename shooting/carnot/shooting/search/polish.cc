@@ -58,7 +58,6 @@ Outcome join(const BoundaryValueProblem& problem,
 Outcome shoot_along(const BoundaryValueProblem& problem,
                     const GeodesicOptions& options,
                     const Path& path) {
-  constexpr double kPart = 1e-6;  // of the distance; near enough to be verified
   const int n = path.dof;
   const double h = problem.time / path.intervals;
   std::vector<double> velocity(n);
@@ -70,7 +69,13 @@ Outcome shoot_along(const BoundaryValueProblem& problem,
   const std::vector<double> lambda(problem.dynamics.multipliers, 0.0);
   const std::span<double> start(z);
   problem.dynamics.momentum(0, start.first(n), velocity, lambda, start.subspan(n));
-  std::vector<double> x = start_unknowns(problem, z.data());
+  return shoot_from(problem, options, start_unknowns(problem, z.data()));
+}
+
+Outcome shoot_from(const BoundaryValueProblem& problem,
+                   const GeodesicOptions& options,
+                   std::vector<double> x) {
+  constexpr double kPart = 1e-6;  // of the distance; near enough to be verified
   const double distance = distance_between_ends(problem);
   Eigen::MatrixXd tangent;
   if (!(correct(problem, kFewSteps, 0, x, tangent) <= kPart * distance)) {

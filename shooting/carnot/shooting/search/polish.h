@@ -29,4 +29,9 @@ Outcome shoot_along(const BoundaryValueProblem& problem,
                     const GeodesicOptions& options,
                     const Path& path);
 
+// The same from the unknowns of a start (ends.h).
+Outcome shoot_from(const BoundaryValueProblem& problem,
+                   const GeodesicOptions& options,
+                   std::vector<double> x);
+
 }  // namespace carnot::internal

@@ -108,7 +108,8 @@ bool Search::settled() {
   if (extremals_.empty() || !policy_.may_end(tally_)) return false;
   const ConjugateTimes& conjugate = conjugate_times_of(problem_, extremals_[extremals_.best()]);
   descends_ = conjugate.known && conjugate.times.size() > std::size_t(conjugate.at_end);
-  if (policy_.wants_more() || descends_) return false;
+  const bool has_lower = problem_.dynamics.forced > 0 && !policy_.wants_more() && shoot_below();
+  if (policy_.wants_more() || descends_ || has_lower) return false;
   Competition competition = extremals_.competition();
   competition.missed = missed_estimate(hits());
   return policy_.ends(tally_, competition);

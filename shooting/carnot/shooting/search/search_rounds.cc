@@ -15,6 +15,7 @@
 #include "carnot/shooting/search/polish.h"
 #include "carnot/shooting/search/search.h"
 #include "carnot/shooting/search/sweep.h"
+#include "carnot/shooting/shoot/end_point.h"
 #include "carnot/shooting/shoot/multiple_shooting.h"
 
 namespace carnot::internal {
@@ -29,6 +30,16 @@ constexpr int kMaxStiffness = 2;
 double energy_of(double length, double time) {
   const double speed = length / time;
   return 0.5 * speed * speed;
+}
+
+// At `from`.
+double kinetic_energy(const BoundaryValueProblem& problem, const std::vector<double>& p0) {
+  const std::vector<double> zero(p0.size(), 0.0);
+  std::vector<double> velocity(p0.size()), lambda(problem.dynamics.multipliers);
+  const auto energy = [&](const std::vector<double>& p) {
+    return problem.dynamics.evaluate(0, problem.from, p, velocity, lambda).hamiltonian;
+  };
+  return energy(p0) - energy(zero);
 }
 
 // The path of least action among those that were relaxed and not tightened.
@@ -147,34 +158,68 @@ void Search::momentum_round(int count) {
   for (const Outcome& outcome : polished) take(outcome);
 }
 
+std::vector<double> Search::momentum_scale() const {
+  std::vector<double> scale(problem_.dynamics.dof, 0.0);
+  // Row j: the momentum of coordinate j in the units of the shortest extremal.
+  const Knots& best = extremals_[extremals_.best()].knots;
+  const Eigen::MatrixXd natural =
+      Units(problem_, start_unknowns(problem_, best.at(0)))
+          .momenta(Eigen::MatrixXd::Identity(problem_.dynamics.dof, problem_.dynamics.dof));
+  double largest = 0;
+  for (const Extremal& extremal : extremals_) {
+    const Geodesic& geodesic = extremal.geodesic;
+    for (std::size_t j = 0; j < geodesic.p0.size(); ++j) {
+      const double size = std::abs(geodesic.p0[j]);
+      scale[j] = std::max(scale[j], size);
+      largest = std::max(largest, size / natural.row(j).norm());
+    }
+  }
+  for (int j = 0; j < problem_.dynamics.dof; ++j) {
+    scale[j] = std::max(scale[j], 0.3 * largest * natural.row(j).norm());
+  }
+  return scale;
+}
+
+bool Search::shoot_below() {
+  constexpr int kShots = 16;
+  constexpr double kLowest = 0.05;  // of the kinetic energy of the best extremal
+  const Extremal& best = extremals_[extremals_.best()];
+  const double action = best.geodesic.action;
+  if (!(action < shot_below_)) return false;
+  shot_below_ = action;
+  SweepOptions sweep;
+  sweep.seed = options_.seed;
+  sweep.round = tally_.drawn;
+  sweep.momentum_scale = momentum_scale();
+  sweep.highest = kinetic_energy(problem_, best.geodesic.p0);
+  sweep.lowest = kLowest * sweep.highest;
+  std::vector<std::optional<Extremal>> found(kShots);
+  parallel_for(kShots, threads_, [&](int i) {
+    std::vector<double> x = draw(problem_, sweep, i);
+    if (x.empty() || deadline_.passed()) return;
+    approach(problem_, kFirstSteps / 2, x);
+    found[i] = shoot_from(problem_, options_, std::move(x)).extremal;
+  });
+  tally_.starts += kShots;
+  const double same = kSameAction * std::abs(action);
+  for (const auto& extremal : found) {
+    if (extremal && extremal->geodesic.action <= action + same) take(extremal);
+  }
+  return extremals_.least_action() < action - same;
+}
+
 void Search::sweep_round(int round) {
   SweepOptions sweep;
   sweep.seed = options_.seed;
   sweep.round = round;
   // The longest extremals wind more often than a coarse grid sees.
   sweep.intervals = drift_ ? intervals_ : round % 2 == 0 ? 64 : 160;
-  sweep.momentum_scale.assign(problem_.dynamics.dof, 0.0);
-  // Row j: the momentum of coordinate j in the units of the shortest extremal.
-  const Knots& best = extremals_[extremals_.best()].knots;
-  const Eigen::MatrixXd natural =
-      Units(problem_, start_unknowns(problem_, best.at(0)))
-          .momenta(Eigen::MatrixXd::Identity(problem_.dynamics.dof, problem_.dynamics.dof));
+  sweep.momentum_scale = momentum_scale();
   double shortest = std::numeric_limits<double>::infinity();
   double longest = 0;
-  double largest = 0;
   for (const Extremal& extremal : extremals_) {
-    const Geodesic& geodesic = extremal.geodesic;
-    shortest = std::min(shortest, geodesic.length.value_or(0));
-    longest = std::max(longest, geodesic.length.value_or(0));
-    for (std::size_t j = 0; j < geodesic.p0.size(); ++j) {
-      const double size = std::abs(geodesic.p0[j]);
-      sweep.momentum_scale[j] = std::max(sweep.momentum_scale[j], size);
-      largest = std::max(largest, size / natural.row(j).norm());
-    }
-  }
-  for (int j = 0; j < problem_.dynamics.dof; ++j) {
-    double& scale = sweep.momentum_scale[j];
-    scale = std::max(scale, 0.3 * largest * natural.row(j).norm());
+    shortest = std::min(shortest, extremal.geodesic.length.value_or(0));
+    longest = std::max(longest, extremal.geodesic.length.value_or(0));
   }
   longest = std::max(longest, std::sqrt(2.0) * shortest);
   // Measured: when all sweeps grew from the longest extremal found, one that is 2.1 times as long

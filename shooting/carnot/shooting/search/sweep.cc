@@ -54,7 +54,8 @@ std::vector<double> draw_momentum(const BoundaryValueProblem& problem,
   return p;
 }
 
-// Unknowns of the start; none where there is no such momentum.
+}  // namespace
+
 std::vector<double> draw(const BoundaryValueProblem& problem, const SweepOptions& options, int i) {
   std::seed_seq sequence{options.seed,
                          options.seed >> 32U,
@@ -70,6 +71,8 @@ std::vector<double> draw(const BoundaryValueProblem& problem, const SweepOptions
   z.insert(z.end(), p.begin(), p.end());
   return start_unknowns(problem, z.data());
 }
+
+namespace {
 
 // How far an end is from the target. Where the target is near, coordinates of higher weight are
 // much smaller than others; they are dilated first, so that all count alike.

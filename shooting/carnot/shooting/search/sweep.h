@@ -28,6 +28,9 @@ struct SweepOptions {
   std::vector<double> momentum_scale;  // n standard deviations, up to a common factor
 };
 
+// Draw number i: unknowns of the start (ends.h); none where there is no such momentum.
+std::vector<double> draw(const BoundaryValueProblem& problem, const SweepOptions& options, int i);
+
 // At most `keep` paths, nearest first; the same whatever the number of threads. Their momenta are
 // those of the trajectories.
 std::vector<Path> near_hits(const BoundaryValueProblem& problem,

@@ -96,6 +96,30 @@ double correct(const BoundaryValueProblem& problem,
   return best;
 }
 
+void approach(const BoundaryValueProblem& problem, long steps, std::vector<double>& x) {
+  constexpr int kIterations = 8;
+  constexpr double kLongest = 0.5;  // of the momenta
+  const int n = problem.dynamics.dof;
+  std::vector<double> z = phase_point(problem, x);
+  Eigen::VectorXd residual(n);
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    const auto tangent = end_point_tangent(problem, x, problem.time, steps, z);
+    if (!tangent) return;
+    for (int j = 0; j < n; ++j) {
+      residual[j] = z[target_index(problem, j)] - target_value(problem, j);
+    }
+    const Units units(problem, x);
+    const Eigen::VectorXd step = units.momenta(least_squares(
+        units.tangent(*tangent).topRows(n), units.displacement(residual), kRankRoundOff));
+    const Eigen::Map<Eigen::VectorXd> momenta(x.data(), n);
+    const double longest = kLongest * momenta.norm();
+    const double size = step.norm();
+    if (!std::isfinite(size)) return;
+    Eigen::Map<Eigen::VectorXd>(x.data(), n) -= std::min(1.0, longest / size) * step;
+    if (size < 0.1 * longest) return;
+  }
+}
+
 void reduce(const BoundaryValueProblem& problem,
             long steps,
             double tolerance,

@@ -41,6 +41,10 @@ double correct(const BoundaryValueProblem& problem,
                Eigen::MatrixXd& tangent,
                double rank = kRankRoundOff);
 
+// Newton's method from afar: a few steps of at most half the size of the momenta, until they are
+// short. What it ends at is for correct().
+void approach(const BoundaryValueProblem& problem, long steps, std::vector<double>& x);
+
 // Where directions of x do not move the end point, x becomes the member of least norm, if that is
 // the same path. This is so on an abnormal extremal, where any multiple of the abnormal covector
 // may be added. Where two such directions meet, Newton's method converges slowly and its last steps
