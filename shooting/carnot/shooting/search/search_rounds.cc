@@ -181,7 +181,7 @@ std::vector<double> Search::momentum_scale() const {
 }
 
 bool Search::shoot_below() {
-  constexpr int kShots = 16;
+  constexpr int kShots = 8;
   constexpr double kLowest = 0.05;  // of the kinetic energy of the best extremal
   const Extremal& best = extremals_[extremals_.best()];
   const double action = best.geodesic.action;
@@ -197,7 +197,10 @@ bool Search::shoot_below() {
   parallel_for(kShots, threads_, [&](int i) {
     std::vector<double> x = draw(problem_, sweep, i);
     if (x.empty() || deadline_.passed()) return;
-    approach(problem_, kFirstSteps / 2, x);
+    approach(problem_, kFirstSteps / 4, x);
+    const std::vector<double> z = phase_point(problem_, x);
+    const std::vector<double> p0(z.begin() + problem_.dynamics.dof, z.end());
+    if (!(kinetic_energy(problem_, p0) < sweep.highest)) return;  // and not worth more time
     found[i] = shoot_from(problem_, options_, std::move(x)).extremal;
   });
   tally_.starts += kShots;
