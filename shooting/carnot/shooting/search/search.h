@@ -90,10 +90,10 @@ class Search {
   // Goes down from the best extremal, which is no minimum. False where that gives nothing better.
   bool descend_round();
   // Newton's method on the end point from random momenta of less energy than the best extremal has,
-  // where forces keep the path on a manifold; once for each best extremal. True where that finds a
-  // better one. Paths find few of the basins there: without momenta 7 of 200 answers for random
-  // targets of skate-on-sphere were not the least, now all are, in the same time. To one of them
-  // one path of 500 leads, and one momentum of four.
+  // where forces keep the path on a manifold; once for each best extremal that is a minimum. True
+  // where that finds a better one. Paths find few of the basins there: without momenta 7 of 200
+  // answers for random targets of skate-on-sphere were not the least, now all are, in 1.1 times the
+  // time. To one of them one path of 500 leads, and one momentum of four.
   [[nodiscard]] bool shoot_below();
   // Standard deviations of random momenta.
   [[nodiscard]] std::vector<double> momentum_scale() const;

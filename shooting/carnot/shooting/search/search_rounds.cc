@@ -185,7 +185,7 @@ bool Search::shoot_below() {
   constexpr double kLowest = 0.05;  // of the kinetic energy of the best extremal
   const Extremal& best = extremals_[extremals_.best()];
   const double action = best.geodesic.action;
-  if (!(action < shot_below_)) return false;
+  if (!(action < shot_below_) && !descends_) return false;
   shot_below_ = action;
   SweepOptions sweep;
   sweep.seed = options_.seed;
