@@ -166,10 +166,14 @@ TEST(Geodesic, NearTargetsInAnyDirection) {
       {test::bicycle({0, 1e-6, 0, 0}), 0.00202941420323}};
   constexpr double kDigits = 1e-9;  // of those numbers
   for (const Near& near : list) {
-    const GeodesicReport report = find(near.problem);
-    ASSERT_FALSE(report.geodesics.empty()) << near.action;
-    EXPECT_NEAR(report.geodesics[0].action / near.action, 1, kDigits) << near.action;
-    EXPECT_EQ(report.geodesics[0].label, Label::kLocallyMinimal) << near.action;
+    for (const std::uint64_t seed : {0, 1}) {
+      GeodesicOptions options;
+      options.seed = seed;
+      const GeodesicReport report = find(near.problem, options);
+      ASSERT_FALSE(report.geodesics.empty()) << near.action;
+      EXPECT_NEAR(report.geodesics[0].action / near.action, 1, kDigits) << near.action;
+      EXPECT_EQ(report.geodesics[0].label, Label::kLocallyMinimal) << near.action;
+    }
   }
 }
 

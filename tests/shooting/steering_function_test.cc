@@ -265,7 +265,6 @@ TEST(SteeringFunctionTest, MemoryChangesNoAnswer) {
 
 TEST(SteeringFunctionTest, SearchesThatFailHaveTheirCode) {
   SteeringOptions options;
-  options.starts = 40;
   options.tolerance = 1e-22;
   const SteeringFunction steer(test::sideways().dynamics, options);
   const Steering way = steer.steer(Pose{0, 0, 0, 0}, Pose{0, 1, 0, 0});

@@ -63,7 +63,8 @@ class Search {
   [[nodiscard]] static ExtremalList::Partners partners_for(const BoundaryValueProblem& problem,
                                                            const GeodesicOptions& options,
                                                            const StoppingPolicy& policy);
-  // Whether the search has seen enough. Notes whether the best extremal is past a conjugate time:
+  // Whether the search has seen enough; on a manifold, after momenta below the best extremal were
+  // tried. Notes whether the best extremal is past a conjugate time:
   // then a nearby path is better, and the search goes on from there.
   [[nodiscard]] bool settled();
   // Whether momenta take turns with starts of drift: while these found nothing.

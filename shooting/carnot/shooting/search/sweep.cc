@@ -16,6 +16,15 @@
 #include "carnot/shooting/shoot/knots.h"
 
 namespace carnot::internal {
+double kinetic_energy(const BoundaryValueProblem& problem, const std::vector<double>& p) {
+  const std::vector<double> zero(p.size(), 0.0);
+  std::vector<double> velocity(p.size()), lambda(problem.dynamics.multipliers);
+  const auto energy = [&](const std::vector<double>& at) {
+    return problem.dynamics.evaluate(0, problem.from, at, velocity, lambda).hamiltonian;
+  };
+  return energy(p) - energy(zero);
+}
+
 namespace {
 
 struct Draw {
@@ -30,7 +39,7 @@ std::vector<double> draw_momentum(const BoundaryValueProblem& problem,
   const int n = problem.dynamics.dof;
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform(options.lowest, options.highest);
-  std::vector<double> p(n), zero(n, 0.0), velocity(n), lambda(problem.dynamics.multipliers);
+  std::vector<double> p(n);
   for (int j = 0; j < n; ++j) {
     p[j] = options.momentum_scale[j] * normal(random);
     if (problem.is_free_from(j)) p[j] = 0;
@@ -44,10 +53,7 @@ std::vector<double> draw_momentum(const BoundaryValueProblem& problem,
     return p;
   }
   if (!bring_to_manifold(problem, p)) return {};
-  const auto energy = [&](const std::vector<double>& at) {
-    return problem.dynamics.evaluate(0, problem.from, at, velocity, lambda).hamiltonian;
-  };
-  const double kinetic = energy(p) - energy(zero);  // quadratic in p
+  const double kinetic = kinetic_energy(problem, p);
   if (!(kinetic > 0)) return {};
   const double factor = std::sqrt(uniform(random) / kinetic);
   for (double& x : p) x *= factor;

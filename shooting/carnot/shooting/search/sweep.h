@@ -28,6 +28,9 @@ struct SweepOptions {
   std::vector<double> momentum_scale;  // n standard deviations, up to a common factor
 };
 
+// H(p) - H(0) at the start, which is quadratic in p.
+double kinetic_energy(const BoundaryValueProblem& problem, const std::vector<double>& p);
+
 // Draw number i: unknowns of the start (ends.h); none where there is no such momentum.
 std::vector<double> draw(const BoundaryValueProblem& problem, const SweepOptions& options, int i);
 
