@@ -42,16 +42,18 @@ template <int size, int s>
 
 // One iteration on the tangents dL = A (dz + mu dL) of all stages: entry (r, c) of A is row
 // size r + c of `jacobian`, column c of dz is `dz + size c`, entry r of its dL row size c + r of
-// `increments`. Returns the largest change.
+// `increments`. Returns the largest change, that of column c times weights[c].
 template <int size, int s>
 [[gnu::flatten, gnu::noinline]] double packed_tangent_sweep(const double* mu,
                                                             const double* jacobian,
                                                             const double* dz,
                                                             const double* compensation,
+                                                            const double* weights,
                                                             double* increments) {
   using P = Pack<s>;
-  P most(0);
+  P largest_of_all(0);
   for (int c = 0; c < size; ++c) {
+    P most(0);
     double* const column = increments + c * size * s;
     std::array<P, size> argument;
 #pragma GCC unroll 16
@@ -72,8 +74,9 @@ template <int size, int s>
       most = max(most, abs(sum - P::load(column + r * s)));
       sum.store(column + r * s);
     }
+    largest_of_all = max(largest_of_all, P(weights[c]) * most);
   }
-  return largest(most);
+  return largest(largest_of_all);
 }
 
 }  // namespace carnot

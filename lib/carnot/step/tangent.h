@@ -12,6 +12,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <utility>
 
 #include "carnot/step/runge_kutta.h"
@@ -50,6 +51,7 @@ class Tangent {
     if (!sum.allFinite()) return false;
     if (packed_step_ == T(0)) plain_step_ = h;
     m.add(sum);
+    moved_ = sum;
     return true;
   }
   // Why the last advance() failed.
@@ -104,29 +106,60 @@ class Tangent {
                                               rows_.data(),
                                               m.value.data(),
                                               m.compensation.data(),
+                                              weights_.data(),
                                               tangents_.data());
       };
-      if (!settles(m, sweep)) return false;
       using Rows = Eigen::Matrix<T, kSize * kSize, s, Eigen::RowMajor>;
-      const Vector<T, kSize* kSize> total =
-          Eigen::Map<const Rows>(tangents_.data()).rowwise().sum();
-      sum = Eigen::Map<const Square>(total.data());
+      const auto add_up = [&](Square& to) {
+        const Vector<T, kSize* kSize> total =
+            Eigen::Map<const Rows>(tangents_.data()).rowwise().sum();
+        to = Eigen::Map<const Square>(total.data());
+      };
+      if (!repeated) {
+        sweep();
+        add_up(moved_);
+      }
+      weigh(m);
+      if (!settles(sweep)) return false;
+      add_up(sum);
       return sum.allFinite();
     }
   }
 
-  // Repeats sweep(), which returns the largest change, until that is round-off.
+  // Sets the weights of changes: one over the round-off of a column. Columns are derivatives with
+  // respect to numbers that may have different units. In a column only those entries tell its size
+  // that move: the others are without error, and in other units they may be as large as you like.
+  void weigh(const Compensated<Square>& m) {
+    constexpr T kResolution = std::numeric_limits<T>::epsilon();
+    const auto values = m.value.cwiseAbs();
+    const auto moved = moved_.cwiseAbs();
+    const auto moving = values.cwiseMin(moved / kResolution).cwiseMax(moved);
+    const Matrix<T, 1, kSize> sizes = moving.colwise().maxCoeff();
+    for (int c = 0; c < kSize; ++c) {
+      const T size = sizes[c] > T(0) ? sizes[c] : values.col(c).maxCoeff();
+      weights_[c] = size > T(0) ? T(1) / (kResolution * size) : T(0);
+    }
+  }
+
+  // Repeats sweep(), which returns the largest weighted change, until that or what the next one
+  // would be is round-off. It may fail to fall once, as it does where entries of a column take
+  // turns, but not twice in a row.
   template <class Sweep>
-  bool settles(const Compensated<Square>& m, const Sweep& sweep) {
-    const T resolution = std::numeric_limits<T>::epsilon() * m.value.cwiseAbs().maxCoeff();
+  bool settles(const Sweep& sweep) {
+    constexpr T kRoundOff = T(0.25);
+    constexpr T kStalled = T(8);
     T smallest = std::numeric_limits<T>::max();
+    bool grace = true;
     for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
       const T change = sweep();
-      if (change <= T(0.25) * resolution) return true;
-      if (!(change < smallest)) break;
-      smallest = change;
+      if (change <= kRoundOff) return true;
+      if (change <= kStalled && change * change <= kRoundOff * smallest) return true;
+      const bool falling = change < smallest;
+      if (!falling && !grace) break;
+      grace = falling;
+      if (falling) smallest = change;
     }
-    return smallest <= T(8) * resolution;
+    return smallest <= kStalled;
   }
 
   // sum += mu_ij dL_j.
@@ -146,7 +179,11 @@ class Tangent {
   // First guess, as for the stages: extrapolated from the last step, or A_i dz.
   void predict(const Step& step, bool repeated, const Compensated<Square>& m) {
     if (!repeated) {
-      for (int i = 0; i < count_; ++i) increment_[i] = jacobian_[i].lazyProduct(m.value);
+      moved_.setZero();
+      for (int i = 0; i < count_; ++i) {
+        increment_[i] = jacobian_[i].lazyProduct(m.value);
+        moved_ += increment_[i];
+      }
       return;
     }
     std::swap(increment_, last_);
@@ -160,7 +197,8 @@ class Tangent {
 
   bool iterate(const Step& step, bool repeated, const Compensated<Square>& m) {
     predict(step, repeated, m);
-    return settles(m, [&] {
+    weigh(m);
+    return settles([&] {
       T change(0);
       std::swap(increment_, last_);
       for (int i = 0; i < count_; ++i) {
@@ -168,8 +206,11 @@ class Tangent {
         for (int j = 0; j < count_; ++j) add_stage(step, i, j, last_[j], argument);
         argument += m.value;
         increment_[i] = jacobian_[i].lazyProduct(argument);
-        const T moved = (increment_[i] - last_[i]).cwiseAbs().maxCoeff();
-        if (!(moved <= change)) change = moved;  // NaN, too
+        for (int c = 0; c < kSize; ++c) {
+          const T moved =
+              weights_[c] * (increment_[i].col(c) - last_[i].col(c)).cwiseAbs().maxCoeff();
+          if (!(moved <= change)) change = moved;  // NaN, too
+        }
       }
       return change;
     });
@@ -239,6 +280,8 @@ class Tangent {
   // Lengths of the step whose increments are there, side by side or one by one; 0: none.
   T packed_step_ = T(0);
   T plain_step_ = T(0);
+  Square moved_;                  // what the last step added to M
+  std::array<T, kSize> weights_;  // of the changes of columns
   // Scratch of the linear solves.
   std::array<T, kSize * Step::kMaxCoupled * kSize * Step::kMaxCoupled> matrix_;
   std::array<T, kSize * Step::kMaxCoupled * kSize> rhs_;

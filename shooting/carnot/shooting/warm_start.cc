@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "carnot/shooting/problem/ends.h"
 #include "carnot/shooting/problem/natural_scales.h"
@@ -18,30 +21,53 @@ using namespace internal;
 
 namespace {
 
-constexpr long kSteps = 64;  // of the tangent flow, and where there is no choice of steps
-
-// The steps that reach the tolerance along the extremal from z, all in the scales. The scene
-// chooses them in its own units, where the least of the scales is what an error may be multiplied
-// by.
-StepPlan plan_for(const BoundaryValueProblem& own,
-                  const NaturalScales& scales,
-                  std::vector<double> z,
-                  double tolerance) {
-  const int n = own.dynamics.dof;
-  double least = 1;
-  for (int j = 0; j < n; ++j) {
-    z[j] *= scales.q[j];
-    z[n + j] *= scales.momentum(j);
+// The largest change at which stages have settled for such a tolerance in the scales, in units of
+// the scene; 0, which is round-off, where its numbers are too unlike for one such change.
+double stop_for(const NaturalScales& scales, const std::vector<double>& z, double tolerance) {
+  constexpr double kStop = 3;  // of the tolerance: what is left is smaller by the contraction
+  constexpr double kRoundOff = 100 * std::numeric_limits<double>::epsilon();
+  const std::size_t n = scales.q.size();
+  double least = std::numeric_limits<double>::infinity();
+  double largest = 0;
+  for (std::size_t j = 0; j < n; ++j) {
     least = std::min({least, scales.q[j], scales.momentum(j)});
+    largest = std::max({largest,
+                        scales.q[j] * std::max(1.0, std::abs(z[j])),
+                        scales.momentum(j) * std::max(1.0, std::abs(z[n + j]))});
   }
-  if (own.dynamics.has_automatic_flow()) {
-    AutomaticFlow flow = own.dynamics.automatic_flow(0, own.time, least * tolerance, z);
-    for (double* t : {&flow.plan.start, &flow.plan.end, &flow.plan.step, &flow.plan.last}) {
-      *t /= scales.time;
+  const double stop = kStop * tolerance * least;
+  return stop >= kRoundOff * largest ? stop : 0;
+}
+
+// The equal steps that reach the tolerance along the extremal from z, all in the scales: twice as
+// many until an error is small enough, and then as many as the order says. Where none reach it, as
+// many as the model has.
+StepPlan plan_for(const BoundaryValueProblem& problem,
+                  const NaturalScales& scales,
+                  const std::vector<double>& z,
+                  double tolerance) {
+  constexpr long kFewest = 16;
+  constexpr long kMost = 4096;
+  constexpr double kSafety = 1.1;
+  const auto with = [&](long count) {
+    StepPlan plan = StepPlan::equal(0, problem.time, count);
+    plan.stop = stop_for(scales, z, tolerance);
+    return plan;
+  };
+  std::vector<double> coarse;
+  for (long count = kFewest; count <= kMost; count *= 2) {
+    std::vector<double> fine = z;
+    if (!problem.dynamics.flow(with(count), fine).completed()) continue;
+    if (!coarse.empty()) {
+      const double error = largest_difference(coarse.data(), fine.data(), std::ssize(z));
+      if (error <= tolerance) {
+        const double part = std::pow(error / tolerance, 1.0 / problem.dynamics.order);
+        return with(std::lround(std::ceil(std::min(1.0, kSafety * part) * count / 2)));
+      }
     }
-    if (flow.reached) return flow.plan;
+    coarse = std::move(fine);
   }
-  return StepPlan::equal(0, own.time / scales.time, kSteps);
+  return StepPlan::equal(0, problem.time, EndPointModel::kSteps);
 }
 
 // Broyden's update of an inverse Jacobian, such that inverse * change = step.
@@ -140,8 +166,8 @@ WarmStart::Implementation::Implementation(const BoundaryValueProblem& problem,
   constexpr double kArrives = 1e-6;
   if (!model_.invertible()) return;
   const std::vector<double> start = phase_point(problem_, {p0_.data(), p0_.data() + p0_.size()});
-  rough_ = plan_for(problem, scales_, start, roughness_);
-  plan_ = plan_for(problem, scales_, start, kFine * tolerance);
+  rough_ = plan_for(problem_, scales_, start, roughness_);
+  plan_ = plan_for(problem_, scales_, start, kFine * tolerance);
   const double shorter = std::pow(kStricter, -1.0 / problem.dynamics.order);
   check_ = StepPlan::equal(0, problem_.time, std::lround(std::ceil(shorter * plan_.count)));
   check_.stop = kStricter * plan_.stop;

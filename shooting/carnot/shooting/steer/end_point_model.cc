@@ -6,15 +6,11 @@
 #include "carnot/shooting/shoot/end_point.h"
 
 namespace carnot::internal {
-namespace {
-
-constexpr long kSteps = 64;
-
-}  // namespace
-
 EndPointModel::EndPointModel(const BoundaryValueProblem& problem, const Vector& p0) {
   constexpr double kSingular = 1e-11;
-  constexpr double kAside = 3e-5;  // of p0, for differences: errors of 1e-8 of the cubic term
+  // Of p0, for differences. With 1e-4, 3e-4 and 1e-3 warm starts near the parking vehicle take 2.49,
+  // 3.11 and 4.59 flows for 2.38.
+  constexpr double kAside = 3e-5;
   const Eigen::Index n = p0.size();
   const auto jacobian_at = [&](const Vector& aside) -> Matrix {
     const Vector moved = p0 + aside;

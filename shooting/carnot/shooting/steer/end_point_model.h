@@ -11,6 +11,7 @@ namespace carnot::internal {
 class EndPointModel {
  public:
   static constexpr int kMostDof = kMostSmall;
+  static constexpr long kSteps = 64;  // of its tangent flows
   using Vector = SmallVector;
   using Matrix = SmallMatrix;
 
