@@ -152,7 +152,9 @@ class Elimination {
 
   std::optional<SymbolicMatrix> run(std::vector<Check>& checks) {
     while (!open_.empty()) {
-      if (!constant_pivot() && !pair(checks)) return std::nullopt;
+      if (!constant_pivot() && !single(checks) && !pair(checks) && !quadruple(checks)) {
+        return std::nullopt;
+      }
     }
     const int left = static_cast<int>(std::count(free_.begin(), free_.end(), true));
     SymbolicMatrix result(graph_, frame_.rows, left);
@@ -218,29 +220,101 @@ class Elimination {
     return true;
   }
 
-  bool pair(std::vector<Check>& checks) {
-    for (const int row : open_) {
-      if (entries(row) != 2) continue;
-      int first = 0;
-      while (rows_(row, first).is_zero()) ++first;
-      int second = first + 1;
-      while (rows_(row, second).is_zero()) ++second;
-      // w_first = -b w and w_second = a w, where w takes the place of w_first.
-      const Expression a = rows_(row, first);
-      const Expression b = rows_(row, second);
-      const Expression size = graph_.sum(SymbolicVector{a * a, b * b});
-      if (!size.is_constant()) checks.push_back({size, RateStatus::kConstraintRank});
-      std::erase(open_, row);
-      for (SymbolicMatrix* m : {&frame_, &rows_}) {
-        for (int i = 0; i < m->rows; ++i) {
-          (*m)(i, first) = graph_.sum(SymbolicVector{(*m)(i, second) * a, -((*m)(i, first) * b)});
-          (*m)(i, second) = graph_.number(0);
-        }
-      }
-      free_[second] = false;
-      return true;
+  // An open row, its entries that are not zero, and their columns.
+  struct Row {
+    int index = -1;
+    std::vector<int> columns;
+    SymbolicVector entries;
+  };
+  std::optional<Row> row_of(int count) const {
+    const auto found = std::find_if(
+        open_.begin(), open_.end(), [&](int candidate) { return entries(candidate) == count; });
+    if (found == open_.end()) return std::nullopt;
+    Row row{*found, {}, {}};
+    for (int j = 0; j < rows_.columns; ++j) {
+      if (rows_(*found, j).is_zero()) continue;
+      row.columns.push_back(j);
+      row.entries.push_back(rows_(*found, j));
     }
-    return false;
+    return row;
+  }
+
+  // Where the entries of a row vanish together the constraints lose rank.
+  void close(const Row& row, std::vector<Check>& checks) {
+    const Expression size = dot(graph_, row.entries, row.entries);
+    if (!size.is_constant()) checks.push_back({size, RateStatus::kConstraintRank});
+    std::erase(open_, row.index);
+  }
+
+  using Basis = std::vector<SymbolicVector>;
+
+  // The velocities of `columns` become linear functions of one less: w = sum of u_l basis[l]. The
+  // last column is free no more.
+  void span_by(const std::vector<int>& columns, const Basis& basis) {
+    for (SymbolicMatrix* m : {&frame_, &rows_}) {
+      for (int i = 0; i < m->rows; ++i) {
+        SymbolicVector entries;
+        for (const int j : columns) entries.push_back((*m)(i, j));
+        for (std::size_t l = 0; l < basis.size(); ++l) {
+          (*m)(i, columns[l]) = dot(graph_, entries, basis[l]);
+        }
+        (*m)(i, columns.back()) = graph_.number(0);
+      }
+    }
+    free_[columns.back()] = false;
+  }
+
+  // a w = 0.
+  bool single(std::vector<Check>& checks) {
+    const auto row = row_of(1);
+    if (!row) return false;
+    close(*row, checks);
+    span_by(row->columns, {});
+    return true;
+  }
+
+  bool pair(std::vector<Check>& checks) {
+    const auto row = row_of(2);
+    if (!row) return false;
+    close(*row, checks);
+    span_by(row->columns, {{-row->entries[1], row->entries[0]}});
+    return true;
+  }
+
+  // The entries that other open rows than this one would have in its columns.
+  long entries_with(const Basis& basis, const Row& than) {
+    long count = 0;
+    for (const int row : open_) {
+      if (row == than.index) continue;
+      SymbolicVector entries;
+      for (const int j : than.columns) entries.push_back(rows_(row, j));
+      count += std::count_if(basis.begin(), basis.end(), [&](const SymbolicVector& w) {
+        return !dot(graph_, entries, w).is_zero();
+      });
+    }
+    return count;
+  }
+
+  // With the row as a quaternion r, what is orthogonal to it is spanned by i r, j r and k r, and by
+  // r i, r j and r k. The former have zeros in rows of rates in space, the latter in those of rates
+  // in the body. Without zeros there is no use in it: the saddle of a mass that is constant and
+  // diagonal is the faster one (an ellipsoid, by a quarter).
+  bool quadruple(std::vector<Check>& checks) {
+    const auto row = row_of(4);
+    if (!row) return false;
+    const Expression& a = row->entries[0];
+    const Expression& b = row->entries[1];
+    const Expression& c = row->entries[2];
+    const Expression& d = row->entries[3];
+    const Basis left{{-b, a, -d, c}, {-c, d, a, -b}, {-d, -c, b, a}};
+    const Basis right{{-b, a, d, -c}, {-c, -d, a, b}, {-d, c, -b, a}};
+    const long with_left = entries_with(left, *row);
+    const long with_right = entries_with(right, *row);
+    const long full = static_cast<long>(left.size() * (open_.size() - 1));
+    if (std::min(with_left, with_right) == full) return false;
+    close(*row, checks);
+    span_by(row->columns, with_right < with_left ? right : left);
+    return true;
   }
 
   Graph& graph_;

@@ -69,9 +69,12 @@ SymbolicVector gradient(Graph& graph, const Expression& f, int first, int count)
 // d a_i / d (block).
 SymbolicMatrix jacobian(Graph& graph, const SymbolicVector& a, int first, int count);
 
-// B with G B = 0, as many columns as G leaves free, by elimination: rows with a constant entry give
-// the velocity of its column, and a row of two entries (a, b) gives (-b, a). Nothing where neither
-// is left. Where a and b vanish together, which `checks` tell, G loses rank.
+// B with G B = 0, as many columns as G leaves free, by elimination. A row with a constant entry
+// gives the velocity of its column, and a row of one entry says that a velocity is zero. A row of
+// two entries (a, b) leaves (-b, a), and a row of four, a quaternion r, leaves i r, j r and k r, or
+// r i, r j and r k. Rows that are orthogonal whatever the attitude, such as the rates of a body and
+// the norm of its quaternion, have one entry each then. Nothing where no such row is left. Where
+// the entries of a row vanish together, which `checks` tell, G loses rank.
 std::optional<SymbolicMatrix> frame_of(Graph& graph,
                                        const SymbolicMatrix& constraints,
                                        std::vector<Check>& checks);
