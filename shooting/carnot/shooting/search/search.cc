@@ -57,7 +57,13 @@ bool Search::run() {
   const auto is_late = [&] { return timed_out_ = deadline_.passed(); };
   if (near_) shoot_straight();
   int descents = 0;
-  while (policy_.left(tally_) > 0 && !settled() && !is_late()) {
+  while (policy_.left(tally_) > 0) {
+    if (may_end()) {
+      descends_ = best_is_passed();
+      const bool found_lower = shoots_below() && shoot_below();
+      if (!found_lower && !descends_ && settled()) break;
+    }
+    if (is_late()) break;
     if (!goes_on(policy_.share(tally_))) return false;
     if (by_paths && descends_ && descents < kMaxDescents) {
       if (!descend_round()) sweep_round(descents++);
@@ -104,12 +110,15 @@ bool Search::counts() const {
          std::count(counted.begin(), counted.end(), 1) == 0;
 }
 
-bool Search::settled() {
-  if (extremals_.empty() || !policy_.may_end(tally_)) return false;
+bool Search::may_end() const { return !extremals_.empty() && policy_.may_end(tally_); }
+
+bool Search::best_is_passed() {
   const ConjugateTimes& conjugate = conjugate_times_of(problem_, extremals_[extremals_.best()]);
-  descends_ = conjugate.known && conjugate.times.size() > std::size_t(conjugate.at_end);
-  const bool has_lower = problem_.dynamics.forced > 0 && !policy_.wants_more() && shoot_below();
-  if (policy_.wants_more() || descends_ || has_lower) return false;
+  return conjugate.known && conjugate.times.size() > std::size_t(conjugate.at_end);
+}
+
+bool Search::settled() const {
+  if (policy_.wants_more()) return false;
   Competition competition = extremals_.competition();
   competition.missed = missed_estimate(hits());
   return policy_.ends(tally_, competition);

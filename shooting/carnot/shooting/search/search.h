@@ -63,10 +63,13 @@ class Search {
   [[nodiscard]] static ExtremalList::Partners partners_for(const BoundaryValueProblem& problem,
                                                            const GeodesicOptions& options,
                                                            const StoppingPolicy& policy);
-  // Whether the search has seen enough; on a manifold, after momenta below the best extremal were
-  // tried. Notes whether the best extremal is past a conjugate time:
-  // then a nearby path is better, and the search goes on from there.
-  [[nodiscard]] bool settled();
+  // Whether there is an answer, and as many starts as it takes to ask whether it is enough.
+  [[nodiscard]] bool may_end() const;
+  // Whether the best extremal is past a conjugate time: then a nearby path is better, and the
+  // search goes on from there.
+  [[nodiscard]] bool best_is_passed();
+  // Whether what was found says that little can be missing.
+  [[nodiscard]] bool settled() const;
   // Whether momenta take turns with starts of drift: while these found nothing.
   [[nodiscard]] bool turn_of_momenta() const;
   void relax_round(int count);
@@ -96,6 +99,9 @@ class Search {
   // answers for random targets of skate-on-sphere were not the least, now all are, in 1.1 times the
   // time. To one of them one path of 500 leads, and one momentum of four.
   [[nodiscard]] bool shoot_below();
+  [[nodiscard]] bool shoots_below() const {
+    return problem_.dynamics.forced > 0 && !policy_.wants_more();
+  }
   // Standard deviations of random momenta.
   [[nodiscard]] std::vector<double> momentum_scale() const;
   // Near hits (sweep.h) on energies from that of the shortest extremal to twice that, or to that of
