@@ -12,27 +12,49 @@ namespace carnot::internal::packed_tangents_test {
 namespace {
 
 // Two extremals side by side, each against the tangent flow of Gauss.
-TEST(PackedTangents, AgreeWithTangentFlows) {
+void expect_tangents_of_flows(const BoundaryValueProblem& problem,
+                              const std::array<SmallVector, 2>& p0) {
   constexpr double kCoarse = 1e-4;  // of the largest entry
-  const BoundaryValueProblem problem = test::unicycle({0, 0, 0.3}, {0, 0, 0});
-  ASSERT_EQ(packed_extremals(problem.dynamics), 2);
-  const std::vector<SmallVector> p0{Eigen::Vector3d(1, 2, -0.5), Eigen::Vector3d(-3, 0.5, 2)};
+  const int n = problem.dynamics.dof;
+  ASSERT_EQ(tangents_of_a_pack(problem.dynamics), 2);
   std::array<PackedTangent, 2> tangents;
-  packed_tangents(problem, p0, tangents);
+  ASSERT_TRUE(packed_tangents(problem, p0, tangents));
   for (std::size_t i = 0; i < p0.size(); ++i) {
-    std::vector<double> z{0, 0, 0.3, p0[i][0], p0[i][1], p0[i][2]};
-    std::vector<double> m(36);
+    std::vector<double> z = problem.from;
+    z.insert(z.end(), p0[i].data(), p0[i].data() + n);
+    std::vector<double> m(4 * n * n);
     ASSERT_TRUE(
         problem.dynamics.tangent_flow(StepPlan::equal(0, problem.time, 16), z, m).completed());
-    ASSERT_TRUE(tangents[i].known);
+    const auto expected = [&](int r, int c) { return m[r * 2 * n + n + c]; };
     const double size = tangents[i].j.cwiseAbs().maxCoeff();
-    for (int r = 0; r < 3; ++r) {
+    for (int r = 0; r < n; ++r) {
       EXPECT_NEAR(tangents[i].q1[r], z[r], kCoarse);
-      for (int c = 0; c < 3; ++c) {
-        EXPECT_NEAR(tangents[i].j(r, c), m[r * 6 + 3 + c], kCoarse * size);
-        EXPECT_NEAR(tangents[i].k(r, c), m[(r + 3) * 6 + 3 + c], kCoarse * size);
+      for (int c = 0; c < n; ++c) {
+        EXPECT_NEAR(tangents[i].j(r, c), expected(r, c), kCoarse * size) << r << c;
+        EXPECT_NEAR(tangents[i].k(r, c), expected(n + r, c), kCoarse * size) << r << c;
       }
     }
+  }
+}
+
+TEST(PackedTangents, AgreeWithTangentFlows) {
+  expect_tangents_of_flows(test::unicycle({0, 0, 0.3}, {0, 0, 0}),
+                           {Eigen::Vector3d(1, 2, -0.5), Eigen::Vector3d(-3, 0.5, 2)});
+  expect_tangents_of_flows(test::vehicle({0, 0, 0.3, 0.5}, {0, 0, 0, 0}),
+                           {Eigen::Vector4d(1, 2, -0.5, 0.7), Eigen::Vector4d(-2, 0.5, 2, -2.5)});
+}
+
+TEST(PackedTangents, EndsAreThoseOfFlows) {
+  constexpr double kCoarse = 1e-4;
+  const BoundaryValueProblem problem = test::unicycle({0, 0, 0.3}, {0, 0, 0});
+  const int lanes = ends_of_a_pack(problem.dynamics);
+  ASSERT_GT(lanes, 0);
+  std::vector<SmallVector> p0, ends(lanes);
+  for (int i = 0; i < lanes; ++i) p0.push_back(Eigen::Vector3d(i - 3.5, 1, 0.5 * i));
+  ASSERT_TRUE(packed_ends(problem, p0, ends));
+  for (int i = 0; i < lanes; ++i) {
+    const std::vector<double> q1 = FieldNewton(problem).end(p0[i], 2);
+    for (int r = 0; r < 3; ++r) EXPECT_NEAR(ends[i][r], q1[r], kCoarse);
   }
 }
 
@@ -42,7 +64,7 @@ TEST(FieldNewton, FindsTheSameByPacksAndByTangentFlows) {
   const BoundaryValueProblem problem = test::unicycle({0, 0, 0}, {0, 0, 0});
   BoundaryValueProblem plain = problem;
   plain.dynamics.kernel.fills_packs = false;
-  ASSERT_EQ(packed_extremals(plain.dynamics), 0);
+  ASSERT_EQ(tangents_of_a_pack(plain.dynamics), 0);
   FieldAttempt attempt;
   attempt.point.p0 = Eigen::Vector3d(1, 2, -0.5);
   attempt.inverse = SmallMatrix::Identity(3, 3);

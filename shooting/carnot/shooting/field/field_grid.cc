@@ -18,6 +18,14 @@ std::vector<double> FieldGrid::target(long i) const {
   return q;
 }
 
+std::vector<double> FieldGrid::target(long i, const std::vector<int>& windings) const {
+  std::vector<double> q = target(i);
+  for (std::size_t a = 0; a < windings.size(); ++a) {
+    q[axes[a].coordinate] += windings[a] * axes[a].period;
+  }
+  return q;
+}
+
 FieldGrid::Step FieldGrid::step(long i, std::size_t axis, int direction) const {
   long stride = 1;
   for (std::size_t a = axes.size(); --a > axis;) stride *= static_cast<long>(axes[a].values.size());

@@ -25,6 +25,8 @@ struct FieldGrid {
   [[nodiscard]] long size() const;
   // The target of point i, without windings.
   [[nodiscard]] std::vector<double> target(long i) const;
+  // The same with whole periods of the axes added.
+  [[nodiscard]] std::vector<double> target(long i, const std::vector<int>& windings) const;
   // One value up (direction 1) or down (-1) along an axis.
   [[nodiscard]] Step step(long i, std::size_t axis, int direction) const;
 };

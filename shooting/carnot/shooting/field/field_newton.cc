@@ -59,10 +59,7 @@ std::vector<double> FieldNewton::end(const SmallVector& p0, int factor) const {
 }
 
 void FieldNewton::solve(std::span<FieldAttempt> attempts, long& flows) const {
-  const auto together = static_cast<std::size_t>(packed_extremals(problem_.dynamics));
-  for (std::size_t i = 0; together > 0 && i < attempts.size(); i += together) {
-    solve_packed(attempts.subspan(i, std::min(together, attempts.size() - i)), flows);
-  }
+  if (tangents_of_a_pack(problem_.dynamics) > 0) solve_packed(attempts, flows);
   for (FieldAttempt& attempt : attempts) {
     if (attempt.found) continue;
     approach(attempt, attempt.point.p0);
@@ -70,51 +67,75 @@ void FieldNewton::solve(std::span<FieldAttempt> attempts, long& flows) const {
   }
 }
 
+void FieldNewton::approach_packed(std::span<const FieldAttempt> attempts,
+                                  std::span<SmallVector> p0) const {
+  const auto together = static_cast<std::size_t>(ends_of_a_pack(problem_.dynamics));
+  std::vector<SmallVector> ends(together);
+  for (std::size_t i = 0; i < p0.size(); i += together) {
+    const auto some = p0.subspan(i, std::min(together, p0.size() - i));
+    if (!packed_ends(problem_, some, ends)) continue;
+    for (std::size_t k = 0; k < some.size(); ++k) {
+      const FieldAttempt& attempt = attempts[i + k];
+      const SmallVector correction = attempt.inverse * miss_of(ends[k].data(), attempt.target);
+      if (largest(correction) < largest(some[k])) some[k] -= correction;
+    }
+  }
+}
+
 void FieldNewton::solve_packed(std::span<FieldAttempt> attempts, long& flows) const {
   constexpr int kMost = 4;
-  constexpr double kFalls = 0.5;  // of the error in a step, from the second one on
-  constexpr double kNear = 1e-3;
+  const auto together = static_cast<std::size_t>(tangents_of_a_pack(problem_.dynamics));
   std::vector<SmallVector> p0;
   for (const FieldAttempt& attempt : attempts) p0.push_back(attempt.point.p0);
+  // Fields of 133,956 unicycles take 283,064 tangents without this, 178,178 with it, and 163,222
+  // where it is done twice, which costs what it saves.
+  approach_packed(attempts, p0);
   std::vector<double> last(attempts.size(), kInfinity);
   std::vector<std::size_t> open(attempts.size());
   for (std::size_t i = 0; i < open.size(); ++i) open[i] = i;
-  std::vector<SmallVector> together;
-  std::vector<PackedTangent> tangents(attempts.size());
+  std::vector<SmallVector> some;
+  std::vector<PackedTangent> tangents(together);
   for (int step = 0; step < kMost && !open.empty(); ++step) {
-    together.clear();
-    for (const std::size_t i : open) together.push_back(p0[i]);
-    packed_tangents(problem_, together, tangents);
-    flows += static_cast<long>(open.size());
     std::vector<std::size_t> left;
-    for (std::size_t k = 0; k < open.size(); ++k) {
-      const std::size_t i = open[k];
-      const PackedTangent& tangent = tangents[k];
-      if (!tangent.known) continue;
-      FieldAttempt& attempt = attempts[i];
-      const SmallVector miss = miss_of(tangent.q1.data(), attempt.target);
-      const double error = largest(miss);
-      const SmallMatrix inverse = small_lu_inverse(tangent.j);
-      if (!(error < kFalls * last[i]) || !inverse.allFinite()) continue;
-      last[i] = error;
-      p0[i] -= inverse * miss;
-      if (error > kNear) {
-        left.push_back(i);
-        continue;
+    for (std::size_t first = 0; first < open.size(); first += together) {
+      const std::size_t count = std::min(together, open.size() - first);
+      some.clear();
+      for (std::size_t k = 0; k < count; ++k) some.push_back(p0[open[first + k]]);
+      flows += static_cast<long>(count);
+      if (!packed_tangents(problem_, some, tangents)) continue;
+      for (std::size_t k = 0; k < count; ++k) {
+        const std::size_t i = open[first + k];
+        if (improve(tangents[k], attempts[i], p0[i], last[i])) left.push_back(i);
       }
-      FieldPoint point;
-      point.p0 = p0[i];
-      point.inverse = inverse;
-      if (!polish(attempt.target, error, point)) continue;
-      point.sign = static_cast<std::int8_t>(determinant_of(tangent.j).sign);
-      point.slope = tangent.k * inverse;
-      point.windings = attempt.point.windings;
-      point.origin = attempt.point.origin;
-      attempt.point = point;
-      attempt.found = true;
     }
     open = left;
   }
+}
+
+bool FieldNewton::improve(const PackedTangent& tangent,
+                          FieldAttempt& attempt,
+                          SmallVector& p0,
+                          double& last) const {
+  constexpr double kFalls = 0.5;  // of the error in a step, from the second one on
+  constexpr double kNear = 1e-3;
+  const SmallVector miss = miss_of(tangent.q1.data(), attempt.target);
+  const double error = largest(miss);
+  const SmallMatrix inverse = small_lu_inverse(tangent.j);
+  if (!(error < kFalls * last) || !inverse.allFinite()) return false;
+  last = error;
+  p0 -= inverse * miss;
+  if (error > kNear) return true;
+  FieldPoint point;
+  point.p0 = p0;
+  point.inverse = inverse;
+  if (!polish(attempt.target, error, point)) return false;
+  point.sign = static_cast<std::int8_t>(determinant_of(tangent.j).sign);
+  point.slope = tangent.k * inverse;
+  point.windings = attempt.point.windings;
+  point.origin = attempt.point.origin;
+  attempt.point = point;
+  attempt.found = true;
+  return false;
 }
 
 bool FieldNewton::polish(const std::vector<double>& target, double near, FieldPoint& point) const {

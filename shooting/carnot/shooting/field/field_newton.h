@@ -10,6 +10,7 @@
 
 #include "carnot/shooting/boundary_value_problem.h"
 #include "carnot/shooting/field/field_store.h"
+#include "carnot/shooting/field/packed_tangents.h"
 
 namespace carnot::internal {
 
@@ -41,7 +42,15 @@ class FieldNewton {
   [[nodiscard]] long steps_for(const SmallVector& p0) const;
   // Flows from p0; z is the end. False where that fails.
   bool flow(const SmallVector& p0, int factor, std::vector<double>& z) const;
+  // Takes each p0 nearer to the target of its attempt by a flow of a pack.
+  void approach_packed(std::span<const FieldAttempt> attempts, std::span<SmallVector> p0) const;
   void solve_packed(std::span<FieldAttempt> attempts, long& flows) const;
+  // A step of Newton's method, from p0 with these tangents. True where another one is needed; else
+  // the attempt is found, or there is nothing to hope for. `last` is the error before the step.
+  bool improve(const PackedTangent& tangent,
+               FieldAttempt& attempt,
+               SmallVector& p0,
+               double& last) const;
   // Takes point.p0 to round-off with point.inverse, which is that of an end within `near`.
   bool polish(const std::vector<double>& target, double near, FieldPoint& point) const;
   // Takes p0 nearer to `target` by flows alone, with the inverse Jacobian of a neighbour.

@@ -33,6 +33,11 @@ class FieldStore {
   [[nodiscard]] long size() const { return static_cast<long>(states_.size()); }
   [[nodiscard]] bool known(long i) const { return states_[i].known; }
   [[nodiscard]] double action(long i) const { return states_[i].action; }
+  // Whether point i has more than this action, or nothing.
+  [[nodiscard]] bool is_more(long i, double action) const {
+    constexpr double kBetter = 1e-10;  // relative; less is round-off
+    return !known(i) || action < (1 - kBetter) * states_[i].action;
+  }
   [[nodiscard]] std::int8_t sign(long i) const { return states_[i].sign; }
   // Whether a neighbour has promised less since, and Newton's method failed.
   [[nodiscard]] bool doubted(long i) const { return states_[i].doubted; }

@@ -7,9 +7,7 @@
 //   p(0) + J^-1 dq     and     A + p(T).dq + dq'S dq / 2.
 //
 // Where that is less than the neighbour has, Newton's method on the end point makes an extremal of
-// it (field_newton.h), for several neighbours at once. Its J must have a determinant of the same
-// sign: a change means that a conjugate time has passed T on the way. Sweeps over all points,
-// forward and back, go on until nothing changes.
+// it (field_wave.h). Sweeps over all points, forward and back, go on until nothing changes.
 //
 // The grid is cut into slabs across its first axis, which do not depend on the number of threads:
 // each is swept by one thread, then borders of every second pair, then the others. So the result
@@ -23,16 +21,9 @@
 #include "carnot/shooting/field/field_grid.h"
 #include "carnot/shooting/field/field_newton.h"
 #include "carnot/shooting/field/field_store.h"
+#include "carnot/shooting/field/field_wave.h"
 
 namespace carnot::internal {
-
-struct FieldCounts {
-  long pushes = 0;    // that promised less
-  long improved = 0;  // of these
-  long flows = 0;     // tangent flows
-  long sweeps = 0;    // of the longest spread
-  FieldCounts& operator+=(const FieldCounts& other);
-};
 
 // How a spread ended.
 enum class Spread {
@@ -50,7 +41,9 @@ class FieldSweep {
 
   [[nodiscard]] const FieldStore& points() const { return points_; }
   [[nodiscard]] const FieldCounts& counts() const { return counts_; }
-  [[nodiscard]] std::vector<double> target(long i, const std::vector<int>& windings) const;
+  [[nodiscard]] std::vector<double> target(long i, const std::vector<int>& windings) const {
+    return grid_.target(i, windings);
+  }
   // Takes an extremal to point i that was found otherwise, where it is better. False where it
   // does not lead there, or is no better.
   bool seed(long i, const std::vector<double>& p0, const std::vector<int>& windings, int origin);
@@ -65,42 +58,9 @@ class FieldSweep {
   double verify(long i, const std::vector<double>& units, double allowed);
 
  private:
-  struct Neighbour {
-    long index = -1;
-    std::vector<int> windings;  // of the target there, next to this one
-    SmallVector dq;
-  };
-  // The neighbour along an axis, one step up or down; index -1 where there is none.
-  [[nodiscard]] Neighbour neighbour(long i,
-                                    const FieldPoint& point,
-                                    std::size_t axis,
-                                    int direction) const;
-  [[nodiscard]] double promised(const FieldPoint& from, const SmallVector& dq) const;
   [[nodiscard]] double error_of(long i, const std::vector<double>& units, int factor) const;
-  // A neighbour that was promised less, and how much.
-  struct Push {
-    Neighbour to;
-    double promise = 0;
-  };
-  // Whether what `from` promises is worth trying.
-  [[nodiscard]] bool tempts(const FieldPoint& from, const Push& push) const;
-  // From `from` to a target at dq beside its own; p0 is empty where that is too far to try.
-  [[nodiscard]] FieldAttempt attempt(const FieldPoint& from,
-                                     std::vector<double> target,
-                                     const SmallVector& dq) const;
-  // By way of the point half-way.
-  [[nodiscard]] bool reach_by_half(const FieldPoint& from,
-                                   const Neighbour& to,
-                                   FieldPoint& point,
-                                   FieldCounts& counts) const;
-  // What came of a push that was attempted directly, which may have failed.
-  void take(const FieldPoint& from,
-            const Push& push,
-            const FieldAttempt& attempt,
-            FieldCounts& counts);
-  // Tells these neighbours what `from` promises them.
-  void push(const FieldPoint& from, const std::vector<Neighbour>& neighbours, FieldCounts& counts);
-  void push_all(long i, long first, long last, FieldCounts& counts);
+  // Tells the neighbours of point i within [first, last) what it promises them.
+  void push_all(long i, long first, long last, FieldWave& wave);
   // One sweep over the layers first to last, forward or back. It ends early where `goes_on` says
   // so, which is asked before every layer.
   void sweep_slab(long first,
@@ -108,6 +68,7 @@ class FieldSweep {
                   bool forward,
                   const std::function<bool()>& goes_on,
                   FieldCounts& counts);
+  // Tells points across the border above a layer, up and down.
   void cross(long layer, FieldCounts& counts);
 
   const BoundaryValueProblem& problem_;
