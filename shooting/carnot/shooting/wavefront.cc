@@ -77,6 +77,7 @@ class FrontMaker {
         horizon_(kMargin * options.length),
         cuts_(dynamics,
               from,
+              momenta_,
               {horizon_, options.mod_angles, options.seed, options.threads, options.progress}) {
     (void)validated_speed(dynamics, from, momenta_.momentum({Eigen::Vector3d::UnitX(), 0}));
     for (int k = 0; seen_.size() < 3 && k < std::min(n_, 3); ++k) seen_.push_back(k);

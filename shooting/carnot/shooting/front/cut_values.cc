@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "carnot/numerics/parallel.h"
@@ -62,37 +63,63 @@ CutValue CutValues::searched(const std::vector<double>& p) {
   return value;
 }
 
-// Takes the rival of the ray from p to that from `to`, in as many steps as Newton's method needs.
-bool CutValues::follow(const std::vector<double>& p,
-                       const std::vector<double>& to,
-                       int halvings,
-                       Rival& rival) const {
-  const Ray ray(dynamics_, from_, to);
-  Rival next = rival;
-  if (polish_meeting(ray, ray.enough_steps(rival.t), next) && next.t > 0 &&
-      apart(next.p, rival.p) <= kNear * size_of(p)) {
+// How far apart two momenta are, in directions and relative to their place on the line.
+double CutValues::turned(const std::vector<double>& a, const std::vector<double>& b) const {
+  const UnitMomentum one = all_momenta_.place(a);
+  const UnitMomentum other = all_momenta_.place(b);
+  const double along = std::abs(one.w) + std::abs(other.w);
+  return (one.c - other.c).norm() + (along > 0 ? 2 * std::abs(one.w - other.w) / along : 0);
+}
+
+Rival CutValues::moved(const Way& from, const Way& to, const Rival& rival) const {
+  Rival guess = rival;
+  if (std::isfinite(from.conjugate) && std::isfinite(to.conjugate)) {
+    guess.t *= to.conjugate / from.conjugate;
+  }
+  if (!all_momenta_.has_line()) return guess;
+  const double w = all_momenta_.place(from.p).w;
+  UnitMomentum place = all_momenta_.place(rival.p);
+  place.w += std::copysign(1.0, w * place.w) * (all_momenta_.place(to.p).w - w);
+  guess.p = all_momenta_.momentum(place);
+  return guess;
+}
+
+// Takes the rival of a ray to another one, in as many steps as Newton's method needs.
+bool CutValues::follow(const Way& from, const Way& to, int halvings, Rival& rival) const {
+  constexpr double kItself = 1e-6;  // of |p|: the ray is a rival of its own, which is not meant
+  const Ray ray(dynamics_, from_, to.p);
+  const Rival guess = moved(from, to, rival);
+  Rival next = guess;
+  const double size = size_of(from.p);
+  if (polish_meeting(ray, ray.enough_steps(guess.t), next) && next.t > 0 &&
+      apart(next.p, guess.p) <= kNear * size && apart(next.p, to.p) > kItself * size) {
     rival = std::move(next);
     return true;
   }
   if (halvings == 0) return false;
-  std::vector<double> middle = p;
-  for (std::size_t j = 0; j < p.size(); ++j) middle[j] = 0.5 * (p[j] + to[j]);
-  const double speed = speed_of(dynamics_, from_, middle);
-  for (double& x : middle) x /= speed;
-  return follow(p, middle, halvings - 1, rival) && follow(middle, to, halvings - 1, rival);
+  Way middle{from.p, 0.5 * (from.conjugate + to.conjugate)};
+  for (std::size_t j = 0; j < middle.p.size(); ++j) middle.p[j] = 0.5 * (from.p[j] + to.p[j]);
+  const double speed = speed_of(dynamics_, from_, middle.p);
+  for (double& x : middle.p) x /= speed;
+  return follow(from, middle, halvings - 1, rival) && follow(middle, to, halvings - 1, rival);
 }
 
 // Whether the partner of ray j leads to one of this ray that is met before value.t.
 bool CutValues::meets(const Ray& ray, int j, int halvings, CutValue& value) const {
   const CutValue& neighbour = values_[j];
   if (!neighbour.known || neighbour.at_conjugate || std::isinf(neighbour.t)) return false;
+  // Near the edge of the cut locus the equations of a meeting are badly conditioned.
+  constexpr double kEdge = 0.1;
+  if (turned(momenta_[j], neighbour.partner.p) < kEdge) return false;
   Rival rival = neighbour.partner;
   rival.t = neighbour.t;
-  if (!follow(momenta_[j], ray.p(), halvings, rival)) return false;
+  const Way from{momenta_[j], neighbour.conjugate};
+  if (!follow(from, {ray.p(), value.conjugate}, halvings, rival)) return false;
   const long steps = ray.enough_steps(rival.t);
   if (rival.t > (1 + kSameTime) * value.conjugate || !(rival.t < (1 - kSameTime) * value.t)) {
     return false;
   }
+  if (turned(ray.p(), rival.p) < kEdge) return false;
   if (same_path(ray, rival, steps)) return false;
   value.known = true;
   value.t = rival.t;
@@ -101,48 +128,53 @@ bool CutValues::meets(const Ray& ray, int j, int halvings, CutValue& value) cons
   return true;
 }
 
-CutValue CutValues::from_neighbours(const std::vector<double>& p,
-                                    double conjugate,
-                                    const std::vector<int>& neighbours) {
+CutValue CutValues::led_to(const std::vector<double>& p,
+                           double conjugate,
+                           const std::vector<int>& neighbours) const {
   constexpr int kHalvings = 4;
+  constexpr double kNeighbours = 0.9;   // what is turned by less may be met as a neighbour
   constexpr double kSamePartner = 0.3;  // of |p|: its neighbours lead to the same one
   CutValue value;
   value.t = kInfinity;
   value.conjugate = conjugate;
   const Ray own(dynamics_, from_, p);
   bool beside_conjugate = false;
-  bool near_edge = false;  // a neighbour and its partner are neighbours
+  double near_edge = 0;  // how far a neighbour and its partner are apart, where they are neighbours
   bool beside_none = false;
   for (const int j : neighbours) {
     const CutValue& neighbour = values_[j];
     if (!neighbour.known) continue;
     beside_conjugate = beside_conjugate || neighbour.at_conjugate;
-    near_edge = near_edge || (!neighbour.at_conjugate && std::isfinite(neighbour.t) &&
-                              apart(neighbour.partner.p, p) < kNear * size_of(p));
+    if (!neighbour.partner.p.empty() && turned(momenta_[j], neighbour.partner.p) < kNeighbours) {
+      near_edge = apart(neighbour.partner.p, momenta_[j]);
+    }
     beside_none = beside_none || std::isinf(neighbour.t);
     const bool same = value.known && value.partner.offset == neighbour.partner.offset &&
                       apart(value.partner.p, neighbour.partner.p) < kSamePartner * size_of(p);
     if (!same) (void)meets(own, j, kHalvings, value);
   }
   if (value.known) return value;
-  if (near_edge && std::isfinite(conjugate)) {
-    if (auto meeting = meet_neighbours(own, conjugate)) {
+  if (near_edge > 0 && std::isfinite(conjugate)) {
+    if (auto meeting = meet_neighbours(own, conjugate, near_edge)) {
       value.known = true;
       value.t = meeting->rival.t;
       value.partner = std::move(meeting->rival);
-      return value;
     }
-    return searched(p);
+    return value;
   }
   // Where a neighbour has none up to the horizon, so has this one, unless it is conjugate before.
-  if (!(beside_none && std::isinf(conjugate)) && (!beside_conjugate || std::isinf(conjugate))) {
-    return searched(p);
-  }
-  value.known = true;
-  if (std::isinf(conjugate)) return value;
-  value.at_conjugate = true;
-  value.t = conjugate;
+  const bool is_conjugate = std::isfinite(conjugate);
+  value.known = is_conjugate ? beside_conjugate : beside_none;
+  value.at_conjugate = value.known && is_conjugate;
+  if (value.at_conjugate) value.t = conjugate;
   return value;
+}
+
+CutValue CutValues::led_to_or_searched(const std::vector<double>& p,
+                                       double conjugate,
+                                       const std::vector<int>& neighbours) {
+  CutValue value = led_to(p, conjugate, neighbours);
+  return value.known ? value : searched(p);
 }
 
 bool CutValues::add_between(const std::vector<std::vector<double>>& momenta,
@@ -152,7 +184,7 @@ bool CutValues::add_between(const std::vector<std::vector<double>>& momenta,
   parallel_for(static_cast<int>(momenta.size()), thread_count(options_.threads), [&](int i) {
     if (!go_on()) return;
     const double conjugate = conjugate_time(Ray(dynamics_, from_, momenta[i]), options_.horizon);
-    made[i] = from_neighbours(momenta[i], conjugate, {parents[i].first, parents[i].second});
+    made[i] = led_to_or_searched(momenta[i], conjugate, {parents[i].first, parents[i].second});
   });
   momenta_.insert(momenta_.end(), momenta.begin(), momenta.end());
   values_.resize(first);
@@ -174,49 +206,62 @@ void CutValues::add_partners(const std::vector<int>& of) {
 
 CutValue CutValues::beside(const std::vector<double>& p, int i) {
   const double conjugate = conjugate_time(Ray(dynamics_, from_, p), options_.horizon);
-  return from_neighbours(p, conjugate, {i});
+  return led_to_or_searched(p, conjugate, {i});
 }
 
 bool CutValues::add(const std::vector<std::vector<double>>& momenta,
                     const std::vector<std::vector<int>>& neighbours) {
-  constexpr int kMostSeeds = 12;
-  constexpr int kFewestSeeds = 4;  // of a curve
-  constexpr int kShare = 16;
   const int count = static_cast<int>(momenta.size());
-  const int seeds = std::min(count, std::clamp(count / kShare, kFewestSeeds, kMostSeeds));
   momenta_ = momenta;
   values_.assign(momenta.size(), {});
-  const int threads = thread_count(options_.threads);
-  parallel_for(count, threads, [&](int i) {
+  parallel_for(count, thread_count(options_.threads), [&](int i) {
     if (go_on()) values_[i].conjugate = conjugate_time(ray(i), options_.horizon);
   });
-  parallel_for(seeds, threads, [&](int k) {
-    // The golden section spreads them over both coordinates of the mesh.
-    const double place = std::fmod(0.5 + 0.6180339887498949 * k, 1.0);
-    const auto i = static_cast<int>(place * count);
-    if (go_on()) values_[i] = searched(momenta_[i]);
-  });
-  return spread(neighbours) && relax(neighbours);
+  std::vector<int> all(count);
+  std::iota(all.begin(), all.end(), 0);
+  return search_some(all) && spread(neighbours) && relax(neighbours);
 }
 
-// From what is known to its neighbours, layer by layer.
+// A few of these, spread evenly.
+bool CutValues::search_some(const std::vector<int>& of) {
+  constexpr int kMost = 12;
+  constexpr int kFewest = 4;  // of a curve
+  constexpr int kShare = 16;
+  const int count = static_cast<int>(of.size());
+  const int some = std::min(count, std::clamp(count / kShare, kFewest, kMost));
+  parallel_for(some, thread_count(options_.threads), [&](int k) {
+    // The golden section spreads them over both coordinates of the mesh.
+    const double place = std::fmod(0.5 + 0.6180339887498949 * k, 1.0);
+    const int i = of[static_cast<int>(place * count)];
+    if (!go_on()) return;
+    values_[i] = searched(momenta_[i]);
+    values_[i].known = true;  // or it would be tried for ever; t is then infinite
+  });
+  return !stopped_;
+}
+
+// From what is known to its neighbours, layer by layer; where this leads no further a few are
+// searched.
 bool CutValues::spread(const std::vector<std::vector<int>>& neighbours) {
   const int count = static_cast<int>(values_.size());
+  std::vector<long> tried(count, 0);  // with so many known neighbours
   for (;;) {
+    std::vector<int> border;
     std::vector<int> layer;
     for (int i = 0; i < count; ++i) {
+      if (values_[i].known) continue;
       const auto known = [&](int j) { return values_[j].known; };
-      if (!known(i) && std::any_of(neighbours[i].begin(), neighbours[i].end(), known)) {
-        layer.push_back(i);
-      }
+      const auto helpers = std::count_if(neighbours[i].begin(), neighbours[i].end(), known);
+      if (helpers > 0) border.push_back(i);
+      if (helpers > tried[i]) layer.push_back(i);
+      tried[i] = helpers;
     }
-    if (layer.empty()) return !stopped_;
+    if (border.empty()) return !stopped_;
+    if (layer.empty() && !search_some(border)) return false;
     std::vector<CutValue> made(layer.size());
     parallel_for(static_cast<int>(layer.size()), thread_count(options_.threads), [&](int k) {
       const int i = layer[k];
-      if (!go_on()) return;
-      made[k] = from_neighbours(momenta_[i], values_[i].conjugate, neighbours[i]);
-      made[k].known = true;  // or it would be tried for ever; t is then infinite
+      if (go_on()) made[k] = led_to(momenta_[i], values_[i].conjugate, neighbours[i]);
     });
     if (stopped_) return false;
     for (std::size_t k = 0; k < layer.size(); ++k) values_[layer[k]] = std::move(made[k]);

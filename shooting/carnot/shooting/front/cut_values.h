@@ -2,9 +2,11 @@
 //
 // A few searches (cut_time.h) tell the cut time and the partner of some rays. A neighbour has a
 // partner nearby, to which Newton's method leads in three or four steps, some hundred times as
-// fast. What no neighbour leads to is searched, and where a neighbour promises a partner that is
-// met earlier it is taken. All goes in rounds that only read what the round before has left, so the
-// result does not depend on the number of threads.
+// fast. It begins with a partner that is moved along the line of momenta as the ray is, towards
+// zero or away from it, and with a time in proportion to conjugate times. What no neighbour leads
+// to is searched, and where a neighbour promises a partner that is met earlier it is taken. All
+// goes in rounds that only read what the round before has left, so the result does not depend on
+// the number of threads.
 #pragma once
 
 #include <atomic>
@@ -13,6 +15,7 @@
 #include <vector>
 
 #include "carnot/dynamics.h"
+#include "carnot/shooting/front/unit_momenta.h"
 #include "carnot/shooting/rays/meeting.h"
 
 namespace carnot::internal {
@@ -35,8 +38,14 @@ struct CutValuesOptions {
 
 class CutValues {
  public:
-  CutValues(const Dynamics& dynamics, std::vector<double> from, CutValuesOptions options)
-      : dynamics_(dynamics), from_(std::move(from)), options_(std::move(options)) {}
+  CutValues(const Dynamics& dynamics,
+            std::vector<double> from,
+            UnitMomenta all_momenta,
+            CutValuesOptions options)
+      : dynamics_(dynamics),
+        from_(std::move(from)),
+        all_momenta_(std::move(all_momenta)),
+        options_(std::move(options)) {}
 
   [[nodiscard]] const CutValue& operator[](int i) const { return values_[i]; }
   [[nodiscard]] CutValue& operator[](int i) { return values_[i]; }
@@ -60,14 +69,23 @@ class CutValues {
  private:
   [[nodiscard]] Ray ray(int i) const { return {dynamics_, from_, momenta_[i]}; }
   [[nodiscard]] CutValue searched(const std::vector<double>& p);
-  [[nodiscard]] CutValue from_neighbours(const std::vector<double>& p,
-                                         double conjugate,
-                                         const std::vector<int>& neighbours);
-  bool follow(const std::vector<double>& p,
-              const std::vector<double>& to,
-              int halvings,
-              Rival& rival) const;
+  // What its neighbours lead to, which is unknown where they lead to nothing.
+  [[nodiscard]] CutValue led_to(const std::vector<double>& p,
+                                double conjugate,
+                                const std::vector<int>& neighbours) const;
+  [[nodiscard]] CutValue led_to_or_searched(const std::vector<double>& p,
+                                            double conjugate,
+                                            const std::vector<int>& neighbours);
+  [[nodiscard]] double turned(const std::vector<double>& a, const std::vector<double>& b) const;
+  // A ray between two others, and its conjugate time.
+  struct Way {
+    std::vector<double> p;
+    double conjugate = 0;
+  };
+  [[nodiscard]] Rival moved(const Way& from, const Way& to, const Rival& rival) const;
+  bool follow(const Way& from, const Way& to, int halvings, Rival& rival) const;
   bool meets(const Ray& ray, int j, int halvings, CutValue& value) const;
+  bool search_some(const std::vector<int>& of);
   bool spread(const std::vector<std::vector<int>>& neighbours);
   bool relax(const std::vector<std::vector<int>>& neighbours);
   bool improve(int i, const std::vector<int>& neighbours, CutValue& value) const;
@@ -75,6 +93,7 @@ class CutValues {
 
   Dynamics dynamics_;
   std::vector<double> from_;
+  UnitMomenta all_momenta_;
   CutValuesOptions options_;
   std::vector<std::vector<double>> momenta_;
   std::vector<CutValue> values_;

@@ -193,23 +193,24 @@ class Branch {
 };
 
 // Between two values of the branch where the excess has different signs: goes to where it is zero.
-// The equations of a meeting would be badly conditioned there.
+// The equations of a meeting would be badly conditioned there. Near the ray the excess grows as the
+// third power; but for that it is nearly linear.
 bool find_zero(double low, double at_low, double high, double at_high, long steps, Branch& branch) {
   constexpr double kEnough = 1e-13;  // relative
   bool found = true;
+  const auto scaled = [](double excess, double value) { return excess / (value * value * value); };
   const auto excess_at = [&](double value) {
     found = branch.go_to(value, steps);
-    return found ? std::optional(branch.excess()) : std::nullopt;
+    return found ? std::optional(scaled(branch.excess(), value)) : std::nullopt;
   };
-  illinois(low, at_low, high, at_high, kEnough * high, excess_at);
+  illinois(low, scaled(at_low, low), high, scaled(at_high, high), kEnough * high, excess_at);
   return found;
 }
 
 // On one side.
-std::optional<Meeting> meet_neighbour(const Ray& ray,
-                                      const VectorXd& direction,
-                                      double conjugate_time,
-                                      long steps) {
+std::optional<Meeting> meet_neighbour(
+    const Ray& ray, const VectorXd& direction, double conjugate_time, double expected, long steps) {
+  constexpr double kBefore = 0.6;  // of what is expected
   constexpr double kFirst = 1e-3;  // of |p|: what is nearer is conjugate to 1e-6 of the time
   constexpr double kGrowth = 1.4;
   constexpr double kFarthest = 1;
@@ -225,6 +226,7 @@ std::optional<Meeting> meet_neighbour(const Ray& ray,
       if (!find_zero(before, excess_before, value, excess, steps, branch)) return std::nullopt;
       return Meeting{branch.rival(), 0};
     }
+    if (before == 0) part = std::max(part, kBefore / kGrowth * expected / size);
     before = value;
     excess_before = excess;
   }
@@ -233,7 +235,7 @@ std::optional<Meeting> meet_neighbour(const Ray& ray,
 
 }  // namespace
 
-std::optional<Meeting> meet_neighbours(const Ray& ray, double conjugate_time) {
+std::optional<Meeting> meet_neighbours(const Ray& ray, double conjugate_time, double expected) {
   constexpr double kSameTime = 1e-10;
   constexpr double kEarliest = 0.9;  // of the conjugate time
   // What neighbours share magnifies the errors of the flow.
@@ -246,7 +248,9 @@ std::optional<Meeting> meet_neighbours(const Ray& ray, double conjugate_time) {
   double latest = (1 - kSameTime) * conjugate_time;
   for (const double side : {1.0, -1.0}) {
     const VectorXd direction = side * still;
-    auto meeting = meet_neighbour(ray, direction, conjugate_time, steps);
+    auto meeting = meet_neighbour(ray, direction, conjugate_time, expected, steps);
+    if (!meeting && expected > 0)
+      meeting = meet_neighbour(ray, direction, conjugate_time, 0, steps);
     if (!meeting || meeting->rival.t < kEarliest * conjugate_time) continue;
     if (!(meeting->rival.t < latest)) continue;
     latest = meeting->rival.t;

@@ -44,8 +44,8 @@ std::optional<Meeting> meet(const Ray& ray, Rival rival, long steps);
 // a neighbour, and meets the ray so shortly before that no search tells. It lies on the branch of
 // extremals that leaves the ray at the conjugate time along what the tangent flow does not move
 // there. The branch is followed to both sides, by how far it is along that, until it is neither
-// longer nor shorter.
-std::optional<Meeting> meet_neighbours(const Ray& ray, double conjugate_time);
+// longer nor shorter; quickly to near where it is expected, where a distance of both momenta is.
+std::optional<Meeting> meet_neighbours(const Ray& ray, double conjugate_time, double expected = 0);
 
 // Newton's method alone, for a rival that is near already; `steps` are enough.
 bool polish_meeting(const Ray& ray, long steps, Rival& rival);
