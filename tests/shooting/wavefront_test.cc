@@ -98,23 +98,66 @@ TEST(Wavefront, TheHeisenbergBallHasItsVolume) {
   EXPECT_LT(sphere.volume, expected);
 }
 
-TEST(Wavefront, SpheresOfSE2AreClosedAndEndAtTheirCutTimes) {
-  constexpr double kLength = 2;
-  const FrontMesh sphere = wavefront(unicycle(), {0, 0, 0}, coarse(FrontKind::kSphere, kLength));
+void expect_sphere_of_se2(double length) {
+  SCOPED_TRACE(length);
+  const FrontMesh sphere = wavefront(unicycle(), {0, 0, 0}, coarse(FrontKind::kSphere, length));
   ASSERT_TRUE(sphere.finished);
   EXPECT_TRUE(sphere.closed);
   EXPECT_EQ(sphere.euler, 2);
   int on_seam = 0;
   for (const FrontVertex& vertex : sphere.vertices) {
-    EXPECT_GE(vertex.cut_time, kLength * (1 - 1e-9));
+    EXPECT_GE(vertex.cut_time, length * (1 - 1e-9));
     if (std::strcmp(vertex.label, "maxwell") != 0) continue;
-    EXPECT_NEAR(vertex.cut_time, kLength, 1e-9);
+    EXPECT_NEAR(vertex.cut_time, length, 1e-9);
     if (++on_seam % 40 != 0) continue;
     const CutTime cut = cut_time(unicycle(), {0, 0, 0}, vertex.p0);
     ASSERT_TRUE(cut.cut_time);
-    EXPECT_NEAR(*cut.cut_time, kLength, 1e-8);
+    EXPECT_NEAR(*cut.cut_time, length, 1e-8);
   }
   EXPECT_GT(on_seam, 40);
+}
+
+TEST(Wavefront, SpheresOfSE2AreClosedAndEndAtTheirCutTimes) {
+  // A short one has partners that are neighbours all along its seam.
+  for (const double length : {1.0, 2.0}) expect_sphere_of_se2(length);
+}
+
+// Of the extremal of unit speed with momentum p on SE(2): a pendulum with rho = |(p_x, p_y)|, whose
+// cut time is 2 K(rho) for rho < 1 and 2 k p1(k), k = 1 / rho, for rho > 1, where p1(k) is the
+// least positive zero of cn(p) (E(p) - p) - dn(p) sn(p) (Sachkov, ESAIM: COCV 16 (2010), 1018).
+double se2_cut_time(const std::vector<double>& p) {
+  const double rho = std::hypot(p[0], p[1]);
+  if (rho < 1) return 2 * std::comp_ellint_1(rho);
+  const double k = 1 / rho;
+  const auto f = [&](double amplitude) {
+    const double sn = std::sin(amplitude);
+    return std::cos(amplitude) * (std::ellint_2(k, amplitude) - std::ellint_1(k, amplitude)) -
+           std::sqrt(1 - k * k * sn * sn) * sn;
+  };
+  double low = 0.5 * pi;  // f < 0
+  double high = pi;       // f > 0
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (f(middle) < 0 ? low : high) = middle;
+  }
+  return 2 * k * std::ellint_1(k, low);
+}
+
+// Far along the line partners are neighbours, and cut times nearly conjugate.
+TEST(Wavefront, TheCutLocusOfSE2IsThatOfTheClosedForm) {
+  const FrontMesh cut = wavefront(unicycle(), {0, 0, 0}, coarse(FrontKind::kCut, 4));
+  ASSERT_TRUE(cut.finished);
+  EXPECT_THAT(cut.message, HasSubstr("left out: momenta beyond"));
+  EXPECT_GT(cut.vertices.size(), 1000U);
+  double earliest = 4;
+  for (const FrontVertex& vertex : cut.vertices) {
+    // Partners that are nearer to each other than a thousandth are as good as one.
+    const double tolerance = std::strcmp(vertex.label, "maxwell") == 0 ? 1e-9 : 1e-6;
+    const double expected = se2_cut_time(vertex.p0);
+    EXPECT_NEAR(vertex.cut_time, expected, tolerance * expected);
+    earliest = std::min(earliest, vertex.cut_time);
+  }
+  EXPECT_LT(earliest, 0.51);
 }
 
 // In the Grushin plane from the origin, p = (c, w) with c = 1 or -1: x = c sin(w t) / w and

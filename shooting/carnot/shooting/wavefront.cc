@@ -192,15 +192,18 @@ class FrontMaker {
 
   bool make_first() {
     if (needs_cuts() && !find_cuts()) return false;
-    // What is not the shortest any longer is not seen, but for what borders on it.
-    if (options_.what == FrontKind::kSphere) {
-      std::erase_if(surface_.triangles, [&](const auto& t) {
-        return std::none_of(t.begin(), t.end(), [&](int i) { return is_inside(i); });
-      });
-      std::erase_if(surface_.segments,
-                    [&](const auto& s) { return !is_inside(s[0]) && !is_inside(s[1]); });
-    }
-    return make_images(0);
+    if (!make_images(0)) return false;
+    leave_inside();
+    return true;
+  }
+
+  // What is outside is not seen, but for what borders on the inside.
+  void leave_inside() {
+    std::erase_if(surface_.triangles, [&](const auto& t) {
+      return std::none_of(t.begin(), t.end(), [&](int i) { return is_inside(i); });
+    });
+    std::erase_if(surface_.segments,
+                  [&](const auto& s) { return !is_inside(s[0]) && !is_inside(s[1]); });
   }
 
   // Of the mesh as it is, and checked.
@@ -238,7 +241,9 @@ class FrontMaker {
     const double edge = part * options_.edge;
     Refinement how{edge, part * options_.angle, kShortest * edge, options_.most, {}};
     how.make = [this](int first, const std::vector<Between>& parents) {
-      return make(first, parents);
+      if (!make(first, parents)) return false;
+      leave_inside();
+      return true;
     };
     rough_ = refine(how, surface_);
     return rough_ >= 0;
@@ -342,13 +347,21 @@ class FrontMaker {
       if (!one.at_conjugate) one.partner = momenta_.place(value.partner.p);
       border.push_back(one);
     }
-    const std::vector<int> classes = sew(
+    std::vector<int> classes = sew(
         border,
         [&](int first, const std::vector<int>& of) {
           cuts_.add_partners(of);
           (void)make_images(first);
         },
         surface_);
+    seam_end_ = static_cast<int>(surface_.vertices.size());
+    const auto make_middles = [this](int first, const std::vector<Between>& parents) {
+      return make(first, parents);
+    };
+    (void)cut_edges(doubled_edges(classes, surface_), make_middles, surface_);
+    while (classes.size() < surface_.vertices.size()) {
+      classes.push_back(static_cast<int>(classes.size()));
+    }
     Surface whole{{}, surface_.triangles, surface_.segments};
     merge(classes, whole);
     const Topology topology = topology_of(whole);
@@ -393,7 +406,8 @@ class FrontMaker {
     if (needs_cuts() || (options_.what == FrontKind::kFront && options_.times)) {
       vertex.cut_time = cuts_[i].t;
       vertex.conjugate_time = cuts_[i].conjugate;
-      const bool on_seam = options_.what == FrontKind::kCut || (border_ >= 0 && i >= border_);
+      const bool on_seam =
+          options_.what == FrontKind::kCut || (border_ >= 0 && i >= border_ && i < seam_end_);
       if (on_seam) vertex.label = cuts_[i].at_conjugate ? "conjugate" : "maxwell";
     } else if (options_.what == FrontKind::kCaustic) {
       vertex.conjugate_time = times_[i];
@@ -432,7 +446,8 @@ class FrontMaker {
   std::vector<double> ends_;   // q of each vertex
   std::vector<double> times_;  // of each vertex, of a caustic or a cut locus
   std::vector<double> sizes_;
-  int border_ = -1;  // the first vertex of the border
+  int border_ = -1;                                 // the first vertex of the border
+  int seam_end_ = std::numeric_limits<int>::max();  // vertices from here on are inside
   long rough_ = 0;
   std::atomic<bool> stopped_{false};
 };

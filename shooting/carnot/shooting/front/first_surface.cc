@@ -11,8 +11,9 @@ namespace {
 constexpr int kAround = 48;  // vertices
 constexpr int kAlong = 33;
 
+// In general position: no vertex is an abnormal extremal, whose neighbours have other cut times.
 UnitMomentum on_circle(int j, int around) {
-  const double phi = 2 * std::numbers::pi * j / around;
+  const double phi = 2 * std::numbers::pi * (j + 0.37) / around;
   return {{std::cos(phi), std::sin(phi), 0}, 0};
 }
 

@@ -191,6 +191,21 @@ std::vector<int> sew(const std::vector<BorderVertex>& border,
   return classes;
 }
 
+std::set<Edge> doubled_edges(const std::vector<int>& classes, const Surface& surface) {
+  const std::map<Edge, int> edges = edges_of(surface);
+  std::map<Edge, int> merged;
+  const auto image = [&](const Edge& edge) {
+    return edge_of(classes[edge.first], classes[edge.second]);
+  };
+  for (const auto& [edge, count] : edges) merged[image(edge)] += count;
+  std::set<Edge> doubled;
+  for (const auto& [edge, count] : edges) {
+    const Edge one = image(edge);
+    if (count == 2 && one.first != one.second && merged[one] > 2) doubled.insert(edge);
+  }
+  return doubled;
+}
+
 void merge(const std::vector<int>& classes, Surface& surface) {
   std::vector<std::array<int, 3>> kept;
   for (auto t : surface.triangles) {

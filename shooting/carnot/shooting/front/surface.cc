@@ -139,8 +139,30 @@ void divide(const std::array<int, 3>& t,
   }
 }
 
-// One round. False when stopped.
-bool cut_edges(const std::set<Edge>& cut, const Refinement& how, Surface& surface) {
+}  // namespace
+
+SurfaceVertex Surface::between(const Between& part) const {
+  return {internal::between(vertices[part.a].place, vertices[part.b].place, part.part), {}};
+}
+
+std::vector<std::vector<int>> Surface::neighbours() const {
+  std::vector<std::set<int>> sets(vertices.size());
+  for (const auto& t : triangles) {
+    for (const int i : t) sets[i].insert(t.begin(), t.end());
+  }
+  for (const auto& [a, b] : segments) {
+    sets[a].insert(b);
+    sets[b].insert(a);
+  }
+  std::vector<std::vector<int>> lists;
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    sets[i].erase(static_cast<int>(i));
+    lists.emplace_back(sets[i].begin(), sets[i].end());
+  }
+  return lists;
+}
+
+bool cut_edges(const std::set<Edge>& cut, const MakeVertices& make, Surface& surface) {
   std::map<Edge, int> middle;
   std::vector<Between> parents;
   const int first = static_cast<int>(surface.vertices.size());
@@ -170,30 +192,7 @@ bool cut_edges(const std::set<Edge>& cut, const Refinement& how, Surface& surfac
     }
   }
   surface.segments = std::move(segments);
-  return how.make(first, parents);
-}
-
-}  // namespace
-
-SurfaceVertex Surface::between(const Between& part) const {
-  return {internal::between(vertices[part.a].place, vertices[part.b].place, part.part), {}};
-}
-
-std::vector<std::vector<int>> Surface::neighbours() const {
-  std::vector<std::set<int>> sets(vertices.size());
-  for (const auto& t : triangles) {
-    for (const int i : t) sets[i].insert(t.begin(), t.end());
-  }
-  for (const auto& [a, b] : segments) {
-    sets[a].insert(b);
-    sets[b].insert(a);
-  }
-  std::vector<std::vector<int>> lists;
-  for (std::size_t i = 0; i < sets.size(); ++i) {
-    sets[i].erase(static_cast<int>(i));
-    lists.emplace_back(sets[i].begin(), sets[i].end());
-  }
-  return lists;
+  return make(first, parents);
 }
 
 long refine(const Refinement& how, Surface& surface) {
@@ -207,14 +206,14 @@ long refine(const Refinement& how, Surface& surface) {
     if (static_cast<long>(surface.vertices.size() + cut.size()) > how.most) {
       return static_cast<long>(cut.size());
     }
-    if (!cut_edges(cut, how, surface)) return -1;
+    if (!cut_edges(cut, how.make, surface)) return -1;
   }
   return static_cast<long>(wishes().size());
 }
 
 void clip(const std::vector<bool>& inside,
           const std::function<void(std::vector<Between>&)>& locate,
-          const std::function<bool(int, const std::vector<Between>&)>& make,
+          const MakeVertices& make,
           Surface& surface) {
   std::map<Edge, int> border;
   std::vector<Between> places;

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <functional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -46,25 +47,31 @@ struct Surface {
 // All momenta of unit speed, w from -bound to bound where there is a line.
 Surface first_surface(const UnitMomenta& momenta, double bound);
 
-// What refines a surface. `make` fills the images of new vertices, number `first` and those after
-// it, whose parents are given; false to stop.
+// Fills the images of new vertices, number `first` and those after it, whose parents are given;
+// false to stop.
+using MakeVertices = std::function<bool(int first, const std::vector<Between>& parents)>;
+
+// What refines a surface.
 struct Refinement {
   double longest = 0;   // edge, in the units of images
   double sharpest = 0;  // angle between neighbours, in radians
   double shortest = 0;  // edges are not cut for an angle below this
   int most = 0;         // vertices
-  std::function<bool(int first, const std::vector<Between>& parents)> make;
+  MakeVertices make;
 };
 
 // How many edges still ask to be cut when `most` is reached; -1 where it was stopped.
 long refine(const Refinement& how, Surface& surface);
+
+// Gives each of these edges a vertex in its middle. False when stopped.
+bool cut_edges(const std::set<Edge>& cut, const MakeVertices& make, Surface& surface);
 
 // Cuts the surface where `inside` changes and keeps what is inside. `locate` gives the place of the
 // border on the edges that cross it, from an inner vertex to an outer one, and `make` makes these
 // vertices.
 void clip(const std::vector<bool>& inside,
           const std::function<void(std::vector<Between>&)>& locate,
-          const std::function<bool(int, const std::vector<Between>&)>& make,
+          const MakeVertices& make,
           Surface& surface);
 
 // Leaves out vertices that no triangle has. `kept` gets the old number of each.
