@@ -1,8 +1,9 @@
 // Extremals to given ends by Newton's method, from momenta that are nearly right.
 //
-// Several are solved side by side where the scene has packs (packed_tangents.h): coarse tangents
-// bring an end within 1e-3, and exact flows with the last inverse Jacobian take it to round-off.
-// Where that fails, and without packs, tangent flows do it, one by one.
+// Many are solved side by side where the scene has packs (packed_tangents.h): a coarse flow with
+// the inverse Jacobian of a neighbour and coarse tangents bring an end within 1e-3, and exact flows
+// with the last inverse Jacobian take it to round-off. Where that fails, and without packs, tangent
+// flows do it, one by one.
 #pragma once
 
 #include <span>
