@@ -38,6 +38,7 @@ Examples
   carnot front unicycle --from 0,0,0 --momentum 0.4,0.3,0.9 --what cut
   carnot front heisenberg-group --from 0,0,0 --momentum 1,0,2 --what cut --json
   carnot front unicycle --from 0,0,0 --momentum 0.4,0.3,0.9 --what cut --cover --max-time 20
+  carnot front satellite-quaternion --from 1,0,0,0 --momentum 0,1,0,0.2 --what cut --mod-sign w,x,y,z
 
 Exit status: 0 known, also where there is none up to --max-time; 1 it could not be told, or time was
 up; 2 bad input, 130 interrupted.)";
@@ -46,6 +47,7 @@ int run_cut_time(const FrontRequest& request, const std::vector<std::string>& ar
   CutTimeOptions options;
   options.max_time = request.max_time;
   options.mod_angles = request.mod_angles;
+  options.signs = request.front.signs;
   options.seed = request.run.seed;
   options.threads = request.run.threads;
   options.time_limit = request.time_limit;
@@ -97,13 +99,20 @@ void add_front_options(CLI::App& app, FrontCall& options) {
       options.output,
       "FILE",
       "write surfaces as .vtp, .ply or .csv; a cut time as .json");
-  add("--plot", options.run.destination.plot, "FILE", "draw surfaces: .png, .svg, .pdf or .gif");
+  add("--plot",
+      options.run.destination.plot,
+      "FILE",
+      "draw surfaces: .png, .svg, .pdf or .gif, which grows with R");
   app.add_flag("--times", options.times, "cut and conjugate times of a front, too");
   app.add_flag("--cusps", options.cusps, "cusp lines and umbilics of a caustic");
   app.add_flag("--check", options.check, "of a sphere: closed, Euler characteristic, volume");
   app.add_flag("--json", options.run.destination.json, "print one JSON object");
   app.add_flag("--quiet", options.run.destination.quiet, "no progress bar");
   app.add_flag("--mod-angles", options.mod_angles, "angles agree modulo their periods (so it is)");
+  add("--mod-sign",
+      options.mod_sign,
+      "NAME,...",
+      "q and -q are one place, as w,x,y,z of rotations");
   app.add_flag("--cover", options.cover, "angles that differ by a period are different places");
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -84,6 +85,33 @@ std::pair<int, double> parse_fixed(const std::string& text, const std::vector<st
   if (at == std::string::npos) refuse("--fix", text, "there is no =", "p_NAME=VALUE");
   const int j = coordinate_of("--fix", text, text.substr(0, at), "p_", names);
   return {j, parse_real("--fix", text.substr(at + 1))};
+}
+
+// --mod-sign NAME,NAME...: -1 for these coordinates.
+std::vector<double> parse_signs(const FrontCall& options,
+                                const Run& run,
+                                const std::vector<double>& from) {
+  if (options.mod_sign.empty()) return {};
+  const auto names = coordinate_names(*run.entry);
+  std::vector<double> signs(names.size(), 1.0);
+  for (const std::string& name : split(options.mod_sign, ',')) {
+    signs[coordinate_of("--mod-sign", options.mod_sign, name, "", names)] = -1;
+  }
+  std::vector<double> there = from;
+  for (std::size_t j = 0; j < there.size(); ++j) there[j] *= signs[j];
+  for (std::size_t j = 0; j < from.size(); ++j) {
+    std::vector<double> p(from.size(), 0.0);
+    p[j] = 1;
+    const double energy_here = energy(run.dynamics, from, p);
+    if (std::abs(energy(run.dynamics, there, p) - energy_here) <= 1e-10 * std::abs(energy_here)) {
+      continue;
+    }
+    refuse("--mod-sign",
+           options.mod_sign,
+           "the scene is another one where these signs are changed",
+           "coordinates such as w,x,y,z of a quaternion");
+  }
+  return signs;
 }
 
 void parse_surface(const FrontCall& options, const Run& run, FrontRequest& request) {
@@ -179,6 +207,7 @@ FrontRequest check(const FrontCall& options) {
   }
   request.mod_angles = !options.cover;
   request.front.mod_angles = request.mod_angles;
+  request.front.signs = parse_signs(options, request.run, request.from);
   request.front.seed = request.run.seed;
   request.front.threads = request.run.threads;
   return request;

@@ -30,6 +30,7 @@ struct FrontCall {
   bool cusps = false;
   bool cover = false;
   bool mod_angles = false;
+  std::string mod_sign;
 };
 
 struct FrontRequest {

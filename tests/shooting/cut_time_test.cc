@@ -280,6 +280,52 @@ TEST(CutTime, OfUnitQuaternionsIsThatOfTheSphere) {
   EXPECT_EQ(cut.label, "conjugate");
 }
 
+// Of rotations, where q and -q are one. With rates of speed 1 and a third component c of the
+// momentum the real part of q at time t is
+//
+//   cos(a t / 2) cos(c t / 2) + c / a sin(a t / 2) sin(c t / 2),     a = sqrt(1 + c^2),
+//
+// and both are as far from 1 where it vanishes; if it does not before 2 pi / a, neighbours arrive
+// there (Boscain & Rossi 2008, SO(3)).
+double rotation_cut_time(double c) {
+  const double a = std::hypot(1, c);
+  const auto real_part = [&](double t) {
+    return std::cos(a * t / 2) * std::cos(c * t / 2) +
+           c / a * std::sin(a * t / 2) * std::sin(c * t / 2);
+  };
+  double low = 0;
+  double high = 2 * pi / a;
+  if (real_part(high) > 0) return high;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (real_part(middle) > 0 ? low : high) = middle;
+  }
+  return low;
+}
+
+TEST(CutTime, OfRotationsIsThatOfTheClosedForm) {
+  CutTimeOptions options;
+  options.signs = {-1, -1, -1, -1};
+  const BoundaryValueProblem at = test::satellite_quaternion({1, 0, 0, 0});
+  for (const double c : {-1.2, -0.3, 0.0, 0.4, 0.9, 2.5}) {
+    SCOPED_TRACE(c);
+    // q' is half the rate, so p is twice its momentum.
+    const CutTime cut = cut_of(at, {0, 2 * std::cos(c), 2 * std::sin(c), 2 * c}, options);
+    ASSERT_TRUE(cut.cut_time) << cut.message;
+    EXPECT_NEAR(*cut.cut_time, rotation_cut_time(c), 1e-10);
+  }
+}
+
+TEST(CutTime, RefusesSignsThatAreNoSymmetry) {
+  CutTimeOptions options;
+  for (const std::vector<double>& signs :
+       {std::vector<double>{-1, -1}, {-1, -1, -1, 0.5}, {1, 1, 1, -1}}) {
+    options.signs = signs;
+    const BoundaryValueProblem at = test::satellite_quaternion({1, 0, 0, 0});
+    EXPECT_THROW((void)cut_of(at, {0, 1, 0.5, 0.7}, options), std::invalid_argument);
+  }
+}
+
 TEST(CutTime, OnTheEngelGroupIsWhereSearchesTellIt) {
   constexpr double kBeside = 0.01;
   const BoundaryValueProblem at = test::engel({0, 0, 0, 0});

@@ -122,6 +122,18 @@ TEST(Wavefront, SpheresOfSE2AreClosedAndEndAtTheirCutTimes) {
   for (const double length : {1.0, 2.0}) expect_sphere_of_se2(length);
 }
 
+TEST(Wavefront, SaysWhereASphereIsOpen) {
+  // At the length 1 all are cut from 2 pi on.
+  FrontOptions options = coarse(FrontKind::kSphere, 1);
+  options.bound = 3;
+  const FrontMesh open = wavefront(heisenberg(), {0, 0, 0}, options);
+  EXPECT_FALSE(open.closed);
+  EXPECT_THAT(open.message, HasSubstr("momenta beyond 3"));
+  EXPECT_THAT(open.message, HasSubstr("open"));
+  options.bound = 7;
+  EXPECT_EQ(wavefront(heisenberg(), {0, 0, 0}, options).message, "");
+}
+
 // Of the extremal of unit speed with momentum p on SE(2): a pendulum with rho = |(p_x, p_y)|, whose
 // cut time is 2 K(rho) for rho < 1 and 2 k p1(k), k = 1 / rho, for rho > 1, where p1(k) is the
 // least positive zero of cn(p) (E(p) - p) - dn(p) sn(p) (Sachkov, ESAIM: COCV 16 (2010), 1018).

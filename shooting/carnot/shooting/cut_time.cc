@@ -141,18 +141,26 @@ class CutSearch {
     search.threads = options_.threads;
     search.progress = [this](double) { return go_on(); };
     std::vector<Rival> found;
-    for (int attempt = 0; attempt < kAttempts && go_on(); ++attempt) {
+    const auto add = [&](const BoundaryValueProblem& to, const std::vector<double>& signs) {
       search.seed = options_.seed + static_cast<std::uint64_t>(searches_++);
       search.time_limit = std::max(1e-3, deadline_.left());
-      for (const Geodesic& geodesic : find_geodesics(problem, search).geodesics) {
-        Rival rival{geodesic.p0, std::vector<double>(ray_.from().size(), 0.0), t};
+      for (const Geodesic& geodesic : find_geodesics(to, search).geodesics) {
+        Rival rival{geodesic.p0, std::vector<double>(ray_.from().size(), 0.0), t, signs};
         for (std::size_t j = 0; j < geodesic.windings.size(); ++j) {
           rival.offset[j] = geodesic.windings[j] * ray_.dynamics().info.configuration[j].period;
         }
         found.push_back(std::move(rival));
       }
+    };
+    for (int attempt = 0; attempt < kAttempts && go_on(); ++attempt) {
+      add(problem, {});
       const auto as_short = [&](const Rival& rival) { return excess_of(ray_, rival) <= kAsLong; };
       if (std::any_of(found.begin(), found.end(), as_short)) break;
+    }
+    if (!options_.signs.empty() && go_on()) {
+      BoundaryValueProblem there = problem;
+      for (std::size_t j = 0; j < there.to.size(); ++j) there.to[j] *= options_.signs[j];
+      add(there, options_.signs);
     }
     return found;
   }
@@ -241,7 +249,10 @@ class CutSearch {
     const BoundaryValueProblem problem = ray_.problem(*cut_, steps);
     const Knots knots = knots_of(problem, ray_.p(), 1, steps);
     std::vector<double> place = problem.to;
-    for (std::size_t j = 0; j < place.size(); ++j) place[j] += partner_->offset[j];
+    for (std::size_t j = 0; j < place.size(); ++j) {
+      if (!partner_->signs.empty()) place[j] *= partner_->signs[j];
+      place[j] += partner_->offset[j];
+    }
     for (const ProblemSymmetry& symmetry : symmetries_onto(problem, place, kEnds)) {
       const std::vector<double> image = partner(ray_.dynamics().info, symmetry, knots).p0();
       double size = 0;
@@ -287,6 +298,7 @@ CutTime cut_time(const Dynamics& dynamics,
   }
   if (!(options.time_limit > 0)) throw std::invalid_argument("time_limit must be > 0");
   const double speed = validated_speed(dynamics, from, p0);
+  check_signs(dynamics, from, p0, options.signs);
   std::vector<double> p = p0;
   for (double& x : p) x /= speed;
   CutSearch search(dynamics, from, std::move(p), speed, options);

@@ -34,6 +34,9 @@ struct CutTimeOptions {
   // that is more.
   double max_time = 0;
   bool mod_angles = true;  // angles that agree modulo their periods are one place
+  // 1 or -1 for each coordinate: places that these signs take to each other are one, such as the
+  // quaternions q and -q. The scene is to be the same there. Empty: none are.
+  std::vector<double> signs{};
   std::uint64_t seed = 0;
   int threads = 0;                                              // 0: all cores
   double time_limit = std::numeric_limits<double>::infinity();  // in seconds

@@ -78,8 +78,12 @@ class FrontMaker {
         cuts_(dynamics,
               from,
               momenta_,
-              {horizon_, options.mod_angles, options.seed, options.threads, options.progress}) {
-    (void)validated_speed(dynamics, from, momenta_.momentum({Eigen::Vector3d::UnitX(), 0}));
+              {horizon_,
+               options.mod_angles,
+               options.signs,
+               options.seed,
+               options.threads,
+               options.progress}) {
     for (int k = 0; seen_.size() < 3 && k < std::min(n_, 3); ++k) seen_.push_back(k);
   }
 
@@ -277,7 +281,11 @@ class FrontMaker {
     if (options_.what == FrontKind::kFront) return true;
     const int count = static_cast<int>(surface_.vertices.size());
     std::vector<bool> inside(count);
-    for (int i = 0; i < count; ++i) inside[i] = is_inside(i);
+    for (int i = 0; i < count; ++i) {
+      inside[i] = is_inside(i);
+      const bool at_bound = momenta_.has_line() && std::abs(surface_.vertices[i].place.w) >= bound_;
+      open_at_bound_ = open_at_bound_ || (inside[i] && at_bound);
+    }
     clip(
         inside,
         [&](std::vector<Between>& places) {
@@ -417,6 +425,11 @@ class FrontMaker {
   [[nodiscard]] std::string left_out() const {
     std::ostringstream text;
     text.precision(4);
+    if (options_.what == FrontKind::kSphere && open_at_bound_) {
+      text << "left out: momenta beyond " << bound_
+           << " along their line, of which some are still those of shortest paths: the sphere is "
+           << "open there";
+    }
     if (options_.what != FrontKind::kSphere && momenta_.has_line()) {
       text << "left out: momenta beyond " << bound_ << " along their line";
       if (!at_length() && options_.bound == 0)
@@ -448,6 +461,7 @@ class FrontMaker {
   std::vector<double> sizes_;
   int border_ = -1;                                 // the first vertex of the border
   int seam_end_ = std::numeric_limits<int>::max();  // vertices from here on are inside
+  bool open_at_bound_ = false;                      // some extremals are still inside there
   long rough_ = 0;
   std::atomic<bool> stopped_{false};
 };
@@ -459,14 +473,16 @@ void check_wavefront(const Dynamics& dynamics,
                      const FrontOptions& options) {
   validate(dynamics, from, options);
   const UnitMomenta momenta(dynamics, from, options.fixed);
-  (void)validated_speed(dynamics, from, momenta.momentum({Eigen::Vector3d::UnitX(), 0}));
+  const std::vector<double> p = momenta.momentum({Eigen::Vector3d::UnitX(), 0});
+  (void)validated_speed(dynamics, from, p);
+  check_signs(dynamics, from, p, options.signs);
 }
 
 FrontMesh wavefront(const Dynamics& dynamics,
                     const std::vector<double>& from,
                     const FrontOptions& options) {
   const auto began = std::chrono::steady_clock::now();
-  validate(dynamics, from, options);
+  check_wavefront(dynamics, from, options);
   FrontMesh mesh;
   FrontMaker(dynamics, from, options).run(mesh);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - began;

@@ -49,6 +49,7 @@ struct FrontOptions {
   double bound = 0;    // of the coordinate along the line; 0: chosen
   bool times = false;  // cut and conjugate times at the vertices of a front, too
   bool mod_angles = true;
+  std::vector<double> signs{};  // under which places are one, as in cut_time.h
   std::uint64_t seed = 0;
   int threads = 0;    // 0: all cores
   Progress progress;  // returns false to stop

@@ -27,6 +27,10 @@ double size_of(const std::vector<double>& p) {
   return apart(p, std::vector<double>(p.size(), 0.0));
 }
 
+bool same_kind(const Rival& a, const Rival& b) {
+  return a.offset == b.offset && a.signs == b.signs;
+}
+
 }  // namespace
 
 bool CutValues::go_on() {
@@ -38,6 +42,7 @@ CutValue CutValues::searched(const std::vector<double>& p) {
   CutTimeOptions search;
   search.max_time = options_.horizon;
   search.mod_angles = options_.mod_angles;
+  search.signs = options_.signs;
   search.seed = options_.seed;
   search.threads = 1;
   search.progress = [this](double) { return go_on(); };
@@ -56,10 +61,16 @@ CutValue CutValues::searched(const std::vector<double>& p) {
   const long steps = own.enough_steps(value.t);
   const std::vector<double> a = own.at(value.t, steps);
   const std::vector<double> b = other.at(value.t, steps);
-  for (std::size_t j = 0; j < n && !a.empty() && !b.empty(); ++j) {
+  if (a.empty() || b.empty()) return value;
+  double as_it_is = 0;
+  double with_signs = options_.signs.empty() ? kInfinity : 0;
+  for (std::size_t j = 0; j < n; ++j) {
     const double period = dynamics_.info.configuration[j].period;
     if (period > 0) value.partner.offset[j] = period * std::round((b[j] - a[j]) / period);
+    as_it_is += std::abs(b[j] - a[j] - value.partner.offset[j]);
+    if (!options_.signs.empty()) with_signs += std::abs(b[j] - options_.signs[j] * a[j]);
   }
+  if (with_signs < as_it_is) value.partner.signs = options_.signs;
   return value;
 }
 
@@ -149,7 +160,7 @@ CutValue CutValues::led_to(const std::vector<double>& p,
       near_edge = apart(neighbour.partner.p, momenta_[j]);
     }
     beside_none = beside_none || std::isinf(neighbour.t);
-    const bool same = value.known && value.partner.offset == neighbour.partner.offset &&
+    const bool same = value.known && same_kind(value.partner, neighbour.partner) &&
                       apart(value.partner.p, neighbour.partner.p) < kSamePartner * size_of(p);
     if (!same) (void)meets(own, j, kHalvings, value);
   }
@@ -197,7 +208,10 @@ void CutValues::add_partners(const std::vector<int>& of) {
     CutValue value = values_[i];
     const std::vector<double> p = value.partner.p;
     value.partner.p = momenta_[i];
-    for (double& x : value.partner.offset) x = -x;
+    for (std::size_t j = 0; j < p.size(); ++j) {
+      const double sign = value.partner.signs.empty() ? 1 : value.partner.signs[j];
+      value.partner.offset[j] *= -sign;
+    }
     value.conjugate = conjugate_time(Ray(dynamics_, from_, p), options_.horizon);
     momenta_.push_back(p);
     values_.push_back(std::move(value));
@@ -277,7 +291,7 @@ bool CutValues::improve(int i, const std::vector<int>& neighbours, CutValue& val
     const CutValue& neighbour = values_[j];
     const bool same =
         !value.at_conjugate && std::isfinite(value.t) && !neighbour.at_conjugate &&
-        value.partner.offset == neighbour.partner.offset &&
+        same_kind(value.partner, neighbour.partner) &&
         apart(value.partner.p, neighbour.partner.p) < kSamePartner * size_of(momenta_[i]);
     if (!same && meets(own, j, 1, value)) better = true;
   }

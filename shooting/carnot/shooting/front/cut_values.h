@@ -31,6 +31,7 @@ struct CutValue {
 struct CutValuesOptions {
   double horizon = 0;  // for searches and conjugate times
   bool mod_angles = true;
+  std::vector<double> signs{};  // as in cut_time.h
   std::uint64_t seed = 0;
   int threads = 0;
   Progress progress;  // returns false to stop

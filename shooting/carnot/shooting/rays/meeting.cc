@@ -39,8 +39,12 @@ class MeetingEquations {
     const int n = dynamics.dof;
     const Ray other(dynamics, ray.from(), rival.p);
     const auto end = other.end(rival.t, steps);
-    const std::vector<double> own = ray.at(rival.t, steps);
+    std::vector<double> own = ray.at(rival.t, steps);
     if (!end || own.empty() || !(rival.t > 0)) return false;
+    for (std::size_t j = 0; j < rival.signs.size(); ++j) {
+      own[j] *= rival.signs[j];
+      own[n + j] *= rival.signs[j];
+    }
     const BoundaryValueProblem problem(dynamics, ray.from(), ray.from(), rival.t);
     units_.emplace(problem, rival.p);
     const Motion first = motion_at(dynamics, other.start().data());

@@ -2,9 +2,10 @@
 //
 // Of a ray gamma, a rival is an extremal p1 from the same point with
 //
-//   q(t; p1) = gamma(t) + w,     t (sqrt(2 H(p1)) - 1) = d,
+//   q(t; p1) = S gamma(t) + w,     t (sqrt(2 H(p1)) - 1) = d,
 //
-// where w are whole periods of angles and d is by how much the rival is longer. These are n + 1
+// where w are whole periods of angles, S are signs, as of q and -q that are one rotation, and d is
+// by how much the rival is longer. These are n + 1
 // equations for p1 and t. Along their solutions d(d)/dt = p1(t).gamma'(t) - 1 in units of speed 1,
 // which is negative unless both arrive with one velocity: so t is a function of d as long as the
 // rival has no conjugate time there, and d is taken to zero by continuation. At d = 0 both meet,
@@ -22,6 +23,7 @@ struct Rival {
   std::vector<double> p;       // at the start; runs in the time t
   std::vector<double> offset;  // w
   double t = 0;
+  std::vector<double> signs{};  // S; empty: all are 1
 };
 
 // By how much the rival is longer, relative to t.
