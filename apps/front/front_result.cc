@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "carnot/plots/plot_file.h"
 #include "carnot/plots/script.h"
 #include "carnot/plots/surface_plot.h"
 #include "front/mesh_file.h"
@@ -173,8 +174,9 @@ std::string surfaces_failure(const FrontRequest& request, const std::vector<Fron
     }
     if (request.check && !mesh.closed) {
       return fmt::format(
-          "the sphere of length {:g} is not closed: try a lesser --edge, or another --seed",
-          mesh.length);
+          "the sphere of length {:g} is not closed: {}",
+          mesh.length,
+          mesh.message.empty() ? "try a lesser --edge, or another --seed" : mesh.message);
     }
   }
   return "";
@@ -248,7 +250,8 @@ std::string draw_surfaces(const FrontRequest& request,
   page.color = times ? "length" : "p_{" + plots::symbol(info.configuration[momentum].name) + "}(0)";
   page.plane = seen.size() == 2;
   for (std::size_t k = 0; k < seen.size(); ++k) page.axes[k] = info.configuration[seen[k]];
-  page.halved = what == FrontKind::kFront || meshes.size() > 1;
+  page.growing = plots::is_gif(file) && meshes.size() > 1;
+  page.halved = what == FrontKind::kFront || (meshes.size() > 1 && !page.growing);
   for (const FrontMesh& mesh : meshes) {
     plots::SurfaceSheet sheet;
     sheet.title = fmt::format("{} {:g}", times ? "up to" : "length", mesh.length);

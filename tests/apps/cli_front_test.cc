@@ -185,6 +185,29 @@ TEST(FrontCommand, DrawsSurfaces) {
   EXPECT_THAT(read_text(sandbox.directory() / "f.svg"), HasSubstr("section at y = 0"));
 }
 
+// In a .gif every frame begins with a graphic control extension.
+int frames_of(const std::string& gif) {
+  const std::string mark{'\x21', '\xf9', '\x04'};
+  int frames = 0;
+  for (auto at = gif.find(mark); at != std::string::npos; at = gif.find(mark, at + 1)) ++frames;
+  return frames;
+}
+
+TEST(FrontCommand, GrowsFrontsInAnAnimation) {
+  const Sandbox sandbox;
+  const Words plane{"front", "grushin", "--from", "0,0", "--what", "front", "--vertices", "1600"};
+  const Words space{
+      "front", "heisenberg-group", "--from", "0,0,0", "--what", "front", "--vertices", "1600"};
+  for (const Words& front : {plane, space}) {
+    SCOPED_TRACE(front[1]);
+    const Outcome outcome = sandbox.run(with(front, {"--length", "0.4,0.7,1", "--plot", "f.gif"}));
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(frames_of(read_text(sandbox.directory() / "f.gif")), 3);
+    ASSERT_EQ(sandbox.run(with(front, {"--length", "1", "--plot", "f.gif"})).status, 0);
+    EXPECT_LE(frames_of(read_text(sandbox.directory() / "f.gif")), 1);
+  }
+}
+
 TEST(FrontCommand, GivesSurfacesUpWhenTimeIsUp) {
   const Sandbox sandbox;
   const Outcome late = sandbox.run(

@@ -55,7 +55,9 @@ std::string terminal(const std::string& ending, const Picture& picture) {
         << picture.width / 100 << "in," << picture.height / 100 << "in";
   } else {
     out << "gif enhanced font 'Sans,11' background '#ffffff'" << pixels(1);
-    if (picture.animated) out << " animate delay 6 loop 0";
+    if (picture.animated) {
+      out << " animate delay " << std::lround(100 * picture.frame_seconds) << " loop 0";
+    }
   }
   out << "\n";
   return out.str();

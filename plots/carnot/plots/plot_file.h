@@ -13,6 +13,7 @@ struct Picture {
   double height = 600;
   std::string commands;
   bool animated = false;  // a .gif whose frames are the plots of `commands`
+  double frame_seconds = 0.06;
 };
 
 // Throws std::invalid_argument unless `file` ends in .png, .svg, .pdf or .gif and its directory can

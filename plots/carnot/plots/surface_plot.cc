@@ -110,7 +110,10 @@ void put_pieces(Script& script, const SurfacePage& page, const std::array<Axis, 
   script << "EOD\n";
 }
 
-void draw_space(Script& script, const SurfacePage& page, const std::array<Axis, 3>& axes) {
+void draw_space(Script& script,
+                const SurfacePage& page,
+                const std::array<Axis, 3>& axes,
+                const std::string& values) {
   constexpr std::array kLetters{"x", "y", "z"};
   constexpr double kSides = 420;  // a side of the box, seen from aside, on the canvas
   constexpr double kTics = 80;
@@ -121,7 +124,7 @@ void draw_space(Script& script, const SurfacePage& page, const std::array<Axis, 
          << "set pm3d depthorder noborder\n"
          << "set pm3d lighting primary 0.55 specular 0.25 spec2 0.1\n"
          << "set palette defined (0 '#30123b', 0.2 '#2f6fd6', 0.45 '#1fb8a8', 0.65 '#a2d84a', "
-         << "0.85 '#f0a22e', 1 '#b5331f')\nset cbrange " << range_of_values(page) << "\n"
+         << "0.85 '#f0a22e', 1 '#b5331f')\nset cbrange " << values << "\n"
          << "set colorbox user origin 0.53, 0.3 size 0.011, 0.36\nset cblabel "
          << quoted_markup(page.color) << " tc rgb '#000000'\nset cbtics tc rgb '#000000'\n"
          << "unset key\n";
@@ -257,25 +260,37 @@ std::vector<std::array<std::array<double, 2>, 2>> section_of(const SurfaceSheet&
 }
 
 std::string write_surfaces(const std::string& file, const SurfacePage& page) {
+  constexpr double kLoopSeconds = 3;
+  constexpr double kShortest = 0.06;
   Picture picture;
   picture.width = kWidth;
   picture.height = kHeight;
+  picture.animated = page.growing;
+  const std::size_t sheets = page.sheets.size();
+  picture.frame_seconds = std::max(kShortest, kLoopSeconds / static_cast<double>(sheets));
   Script script;
   const std::array<Axis, 3> axes = axes_of(page);
-  script << "set multiplot\n";
-  put_text(script,
-           picture,
-           kWidth / 2,
-           kHeight - 28,
-           page.title + (page.subtitle.empty() ? "" : "   {/*0.8 " + page.subtitle + "}"));
-  if (page.plane) {
-    draw_curves(script, picture, page, axes);
-  } else {
-    draw_space(script, page, axes);
-    clear_settings(script);
-    draw_section(script, picture, page, axes);
+  const std::string values = page.plane ? "" : range_of_values(page);
+  for (std::size_t shown = page.growing ? 1 : sheets; shown <= sheets; ++shown) {
+    SurfacePage frame = page;
+    frame.sheets.resize(shown);
+    script << "set multiplot\n" << (page.growing ? "unset label\n" : "");
+    put_text(script,
+             picture,
+             kWidth / 2,
+             kHeight - 28,
+             page.title + (page.subtitle.empty() ? "" : "   {/*0.8 " + page.subtitle + "}"));
+    if (page.plane) {
+      draw_curves(script, picture, frame, axes);
+    } else {
+      SurfacePage front = frame;
+      if (page.growing) front.sheets.erase(front.sheets.begin(), front.sheets.end() - 1);
+      draw_space(script, front, axes, values);
+      clear_settings(script);
+      draw_section(script, picture, frame, axes);
+    }
+    script << "unset multiplot\n";
   }
-  script << "unset multiplot\n";
   picture.commands = script.text();
   return write_picture(file, picture);
 }

@@ -33,6 +33,8 @@ struct SurfacePage {
   std::vector<std::vector<std::array<double, 3>>> lines;
   std::vector<std::array<double, 3>> points;
   bool plane = false;  // sheets are curves on the first two axes
+  // Of a .gif: one sheet after the other, with the sections or curves of those before.
+  bool growing = false;
 };
 
 // Ends of the pieces of the section of a sheet: two points each, on the other two axes.
