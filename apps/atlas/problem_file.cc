@@ -155,13 +155,14 @@ void ProblemFile::read_header(const std::string& line, const ListOptions& option
   // Each coordinate has a column, or an option says what it is.
   for (const auto& [prefix, given] : {std::pair<std::string, std::string>{"from_", options.from},
                                       std::pair<std::string, std::string>{"to_", options.to}}) {
+    if (!given.empty()) continue;
     for (const std::string& name : coordinates) {
-      if (!given.empty() || std::any_of(columns_.begin(), columns_.end(), [&](const Column& c) {
-            return c.name == prefix + name;
+      const std::string wanted = prefix + name;
+      if (std::none_of(columns_.begin(), columns_.end(), [&](const Column& column) {
+            return column.name == wanted;
           })) {
-        continue;
+        refuse(where, wanted, "is missing", fmt::format("{}", fmt::join(known, ", ")));
       }
-      refuse(where, prefix + name, "is missing", fmt::format("{}", fmt::join(known, ", ")));
     }
   }
 }
