@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <span>
 #include <string>
 #include <vector>
@@ -156,6 +157,29 @@ TEST(MakeKernelFailure, SaysThatAnAngleIsTooFarForTangents) {
   const FlowReport report = dynamics.tangent_flow(StepPlan::equal(0, 1, 4), z, m);
   EXPECT_FALSE(report.completed());
   EXPECT_EQ(report.last.rate, RateStatus::kFarAngle);
+}
+
+// Whole turns of the headings, some hundred thousand, change nothing but the headings.
+TEST(MakeKernelTangent, TakesTurnsOffAngles) {
+  constexpr long double kTurn = 2 * std::numbers::pi_v<long double>;
+  const Dynamics dynamics = make_dynamics(scenes::Vehicle{});
+  const StepPlan plan = StepPlan::equal(0, 1, 16);
+  const std::vector<double> far{0, 0, 2e6, -3e6, 1, 0.5, 0.2, 0.1};
+  std::vector<double> near = far;
+  for (int j : {2, 3})
+    near[j] = static_cast<double>(std::remainder(static_cast<long double>(far[j]), kTurn));
+  std::vector<double> at_far = far;
+  std::vector<double> at_near = near;
+  std::vector<double> m_far(64);
+  std::vector<double> m_near(64);
+  ASSERT_TRUE(dynamics.tangent_flow(plan, at_far, m_far).completed());
+  ASSERT_TRUE(dynamics.tangent_flow(plan, at_near, m_near).completed());
+  double largest = 1;
+  for (const double x : m_near) largest = std::max(largest, std::abs(x));
+  EXPECT_LE(distance(m_far, m_near), kRoundOff * largest);
+  for (int j = 0; j < 8; ++j) {
+    EXPECT_NEAR(at_far[j] - far[j], at_near[j] - near[j], kRoundOff + kEps * std::abs(far[j]));
+  }
 }
 
 TEST(MakeKernelBatch, AdvancesManyAsOne) {

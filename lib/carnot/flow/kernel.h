@@ -102,10 +102,15 @@ FlowReport tangent_flow(
   const auto& system = method.system(opaque);
   auto stepper = stepper_of(method, system, opaque);
   auto state = load<M::n>(z);
+  auto winding = method.winding;
+  winding.fold(state);
   Compensated<Square> tangent{Square::Identity(), Square::Zero()};
-  const FlowReport report = carnot::tangent_flow(
-      stepper, plan, state, tangent, [](long, const auto&, const auto&) { return true; });
-  view<size>(z) = state.value;
+  const FlowReport report =
+      carnot::tangent_flow(stepper, plan, state, tangent, [&](long, const auto&, auto& node) {
+        winding.fold(node);
+        return true;
+      });
+  view<size>(z) = winding.unfolded(state).value;
   using RowMajor = Eigen::Matrix<double, size, size, Eigen::RowMajor>;
   Eigen::Map<RowMajor> out(m);
   out = tangent.value;

@@ -19,7 +19,7 @@ FlowReport tangent_flow(
     Observer&& observe) {
   Tangent<Stepper> tangent;
   bool tangent_ok = true;
-  FlowReport report = flow(stepper, plan, z, [&](long i, const Stepper& done, const auto& state) {
+  FlowReport report = flow(stepper, plan, z, [&](long i, const Stepper& done, auto& state) {
     tangent_ok = tangent.advance(done, m);
     return tangent_ok && observe(i, done, state);
   });
