@@ -127,6 +127,12 @@ TEST(Failure, BeyondDouble) {
   EXPECT_EQ(reason_of(near, options), Reason::kBeyondDouble);
 }
 
+// A wheel that turns 1e8 rad in place is singular, whatever the digits: steps are too long for it.
+TEST(Failure, SingularIsNotBeyondDouble) {
+  const BoundaryValueProblem fast = test::vehicle({0, 0, 0, 0}, {0, 0, 0, 1e8});
+  EXPECT_EQ(reason_of(fast, {}), Reason::kFlowFailed);
+}
+
 TEST(Failure, NamesDiffer) {
   std::set<std::string> names;
   const auto last = static_cast<int>(Reason::kOnlyAbnormal);

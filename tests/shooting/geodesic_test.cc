@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -16,6 +17,7 @@ namespace carnot::geodesic_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr double kSideways = 22.7078818037714815;  // least action, 25 digits known
 constexpr double kRelative = 1e-11;  // endpoint error times |p| relative to the action, with margin
 
@@ -313,6 +315,17 @@ TEST(Geodesic, CyclicCoordinatesCostNoDigits) {
   const GeodesicReport beside = find(test::grushin({0, 1}, {0, 1 + 1e-7}));
   ASSERT_FALSE(beside.geodesics.empty());
   EXPECT_NEAR(beside.geodesics[0].action, kPi * (1 + 1e-7 - 1), 1e-9 * 1e-7);
+}
+
+// The front wheel alone turns, some hundred thousand times; the target's last digit is 2e-10.
+TEST(Geodesic, AWheelTurnsInPlace) {
+  for (const double angle : {3e5, 1e6, 1.1e6, 2e6, 1e7}) {
+    const GeodesicReport report = find(test::vehicle({0, 0, 0, 0}, {0, 0, 0, angle}));
+    ASSERT_EQ(report.status, GeodesicStatus::kConverged) << angle << ": " << report.message;
+    const Geodesic& best = report.geodesics[0];
+    EXPECT_NEAR(best.action, angle * angle / 2, 4 * kEps * angle * angle);
+    EXPECT_LE(std::max(best.endpoint_error, best.knot_defect), kEps * angle);
+  }
 }
 
 TEST(Geodesic, TimeScalesTheAction) {

@@ -102,6 +102,17 @@ void close(bool finished, std::chrono::steady_clock::time_point began, GeodesicR
   report.elapsed_seconds = elapsed.count();
 }
 
+// The last digit of the target, in natural scales.
+double last_digit(const NaturalScales& scales, const BoundaryValueProblem& problem) {
+  double farthest = 0;
+  for (int j = 0; j < problem.dynamics.dof; ++j) {
+    if (!problem.is_free_to(j)) {
+      farthest = std::max(farthest, std::abs(problem.to[j]) / scales.q[j]);
+    }
+  }
+  return kEpsilon * farthest;
+}
+
 // Options in natural scales, for a problem moved by `origin`.
 GeodesicOptions in_scales(const NaturalScales& scales,
                           const BoundaryValueProblem& problem,
@@ -110,6 +121,8 @@ GeodesicOptions in_scales(const NaturalScales& scales,
   if (options.absolute_tolerance) {
     const double largest = *std::max_element(scales.q.begin(), scales.q.end());
     options.tolerance = *options.absolute_tolerance / largest;
+  } else {
+    options.tolerance = std::max(options.tolerance, last_digit(scales, problem));
   }
   options.max_length /= scales.length();
   for (std::size_t j = 0; j < options.guess.size(); ++j) {

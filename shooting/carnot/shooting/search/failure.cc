@@ -64,7 +64,7 @@ EndPoint end_point(const BoundaryValueProblem& problem,
     else
       text << ", past a conjugate time at " << scales.time * conjugate.times.front();
   }
-  return {text.str(), !(condition * kEpsilon < 1)};
+  return {text.str(), rank == n && !(condition * kEpsilon < 1)};
 }
 
 // The length of the shortest extremal that was found but is too long; infinite where there is none.
