@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Plants the faults of tests/faults/faults.txt, one at a time, and says which test catches each.
+"""Plants the faults of tests/faults/faults.txt, and says which test catches each.
 
 usage: scripts/plant_faults.py [NAME ...]   only those whose words contain one of the names
 
-The faults are planted in a copy of the last commit, in build/faults, which is built with its tests:
-some twenty minutes at first. The exit status is 0 where every fault is caught, 1 where one is not, and
-2 where a fault no longer fits the code or no name fits a fault.
+The faults are planted in a copy of the last commit, in build/faults, which is built with its tests
+once: some twenty minutes. All of them are in the tests then, and the environment says which one is
+awake, so that none hides another. The exit status is 0 where every fault is caught, 1 where one is
+not, and 2 where a fault no longer fits the code or no name fits a fault.
 """
 import os
 import pathlib
@@ -19,6 +20,17 @@ SOURCE = PLACE / "source"
 BUILD = PLACE / "build"
 KEYS = ("what", "file", "from", "to", "test")
 PATIENCE = 120  # seconds; the slowest of these tests takes some twenty
+HEADER = "awake.h"
+AWAKE = """#pragma once
+#include <cstdlib>
+namespace carnot_faults {
+// The number of the fault that is awake; 0 for none.
+inline const int kAwake = [] {
+  const char* const text = std::getenv("CARNOT_FAULT");
+  return text == nullptr ? 0 : std::atoi(text);
+}();
+}  // namespace carnot_faults
+"""
 
 
 def read_faults():
@@ -39,13 +51,38 @@ def run(*command, **options):
                           check=False, **options)
 
 
-def build(target):
-    done = run("cmake", "--build", BUILD, "--target", target, "--parallel", str(os.cpu_count()))
-    return done.returncode == 0, done.stdout
+def planted(text, faults):
+    """The text with each (number, fault) beside what it takes the place of."""
+    places = []
+    for number, fault in faults:
+        if text.count(fault["from"]) != 1:
+            print(f"plant_faults.py: '{fault['from']}' is not once in {fault['file']}", file=sys.stderr)
+            sys.exit(2)
+        places.append((text.index(fault["from"]), number, fault))
+    for at, number, fault in sorted(places, key=lambda place: place[0], reverse=True):
+        either = f"(carnot_faults::kAwake == {number} ? ({fault['to']}) : ({fault['from']}))"
+        text = text[:at] + either + text[at + len(fault["from"]):]
+    return f'#include "{SOURCE / HEADER}"\n{text}'
+
+
+def plant(faults):
+    """Plants all of them in the copy; the first has the number 1."""
+    (SOURCE / HEADER).write_text(AWAKE)
+    for name in {fault["file"] for fault in faults}:
+        file = SOURCE / name
+        of_file = [(i, fault) for i, fault in enumerate(faults, 1) if fault["file"] == name]
+        file.write_text(planted(file.read_text(), of_file))
+
+
+def build(faults):
+    targets = sorted({fault["test"].split()[0] for fault in faults})
+    done = run("cmake", "--build", BUILD, "--target", *targets, "--parallel", str(os.cpu_count()))
+    if done.returncode != 0:
+        sys.exit(done.stdout[-4000:])
 
 
 def prepare():
-    """A copy of the last commit with its tests built."""
+    """A copy of the last commit, configured."""
     subprocess.run(["rm", "-rf", SOURCE], check=True)
     SOURCE.mkdir(parents=True)
     archive = subprocess.Popen(["git", "-C", ROOT, "archive", "HEAD"], stdout=subprocess.PIPE)
@@ -60,10 +97,12 @@ def prepare():
         sys.exit(configured.stdout)
 
 
-def failing_test(binary, names):
-    """The first test that fails, or none."""
+def failing_test(fault, number):
+    """The first of the fault's tests that fails with this one awake (none for 0), or none."""
+    binary, names = fault["test"].split(None, 1)
     try:
-        done = run(BUILD / "tests" / binary, f"--gtest_filter={names}", timeout=PATIENCE)
+        done = run(BUILD / "tests" / binary, f"--gtest_filter={names}", timeout=PATIENCE,
+                   env={**os.environ, "CARNOT_FAULT": str(number)})
     except subprocess.TimeoutExpired:
         return "the tests do not end"
     if "[==========] 0 tests" in done.stdout or "Running 0 tests" in done.stdout:
@@ -74,24 +113,6 @@ def failing_test(binary, names):
     return "the program ends at once" if done.returncode != 0 else None
 
 
-def plant(fault):
-    """The test that catches the fault, or none."""
-    file = SOURCE / fault["file"]
-    text = file.read_text()
-    if text.count(fault["from"]) != 1:
-        print(f"plant_faults.py: '{fault['from']}' is not once in {fault['file']}", file=sys.stderr)
-        sys.exit(2)
-    binary, names = fault["test"].split(None, 1)
-    try:
-        file.write_text(text.replace(fault["from"], fault["to"]))
-        built, log = build(binary)
-        if not built:
-            sys.exit(f"plant_faults.py: with the fault '{fault['what']}' nothing compiles\n{log[-2000:]}")
-        return failing_test(binary, names)
-    finally:
-        file.write_text(text)
-
-
 def main():
     wanted = sys.argv[1:]
     faults = [f for f in read_faults() if not wanted or any(name in f["what"] for name in wanted)]
@@ -99,18 +120,14 @@ def main():
         print(f"plant_faults.py: no fault's words contain {' or '.join(wanted)}", file=sys.stderr)
         return 2
     prepare()
-    for binary in sorted({fault["test"].split()[0] for fault in faults}):
-        built, log = build(binary)
-        if not built:
-            sys.exit(log[-4000:])
-        for fault in faults:
-            if fault["test"].split()[0] == binary:
-                failed = failing_test(*fault["test"].split(None, 1))
-                if failed:
-                    sys.exit(f"plant_faults.py: {failed} fails without a fault")
+    plant(faults)
+    build(faults)
     missed = 0
-    for fault in faults:
-        caught = plant(fault)
+    for number, fault in enumerate(faults, 1):
+        asleep = failing_test(fault, 0)
+        if asleep:
+            sys.exit(f"plant_faults.py: {asleep} fails without a fault")
+        caught = failing_test(fault, number)
         missed += caught is None
         print(f"{fault['what']}: {caught or 'NOT CAUGHT'}", flush=True)
     print(f"{len(faults) - missed} of {len(faults)} faults are caught")
