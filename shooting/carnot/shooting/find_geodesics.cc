@@ -121,7 +121,7 @@ GeodesicOptions in_scales(const NaturalScales& scales,
   if (options.absolute_tolerance) {
     const double largest = *std::max_element(scales.q.begin(), scales.q.end());
     options.tolerance = *options.absolute_tolerance / largest;
-  } else {
+  } else if (options.tolerance == GeodesicOptions{}.tolerance) {
     options.tolerance = std::max(options.tolerance, last_digit(scales, problem));
   }
   options.max_length /= scales.length();

@@ -17,8 +17,8 @@ struct GeodesicOptions {
   double max_length = std::numeric_limits<double>::infinity();
   int starts = 0;  // paths to relax; 0: the default for what is asked
   // The largest endpoint error of a verified extremal, in the problem's own scales: those of a
-  // wheelbase and of a turn, not of the unit that lengths happen to be in. No less than the last
-  // digit of the target.
+  // wheelbase and of a turn, not of the unit that lengths happen to be in. The default is no less
+  // than the last digit of the target.
   double tolerance = 1e-10;
   // The same in the units of the coordinates; takes the place of `tolerance` where it is given.
   std::optional<double> absolute_tolerance;
