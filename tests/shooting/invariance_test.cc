@@ -228,8 +228,8 @@ TEST(Invariances, OfUnitsInContinuation) {
   }
 }
 
-// The derivative of an end point is the same, in packs and stage by stage: with coordinates in small
-// and in large units no column of it is lost beside another one.
+// The derivative of an end point is the same, in packs and stage by stage: with coordinates in
+// small and in large units no column of it is lost beside another one.
 TEST(Invariances, OfUnitsInTangentFlows) {
   // M is as large as 2000 and grows from round-off of 64 steps.
   constexpr double kSame = 1e4 * std::numeric_limits<double>::epsilon();

@@ -3,9 +3,9 @@
 // The interpreter (tape_machine.h) spends most of its time on what surrounds an operation: the jump
 // to the next step, loads of operands that were stored a moment ago, and addresses. The same steps,
 // in the same order and with the same roundings, are one instruction each where values stay in
-// registers: the results are those of the interpreter, bit for bit in arithmetic, and in sines where
-// the compiler fuses no more than is written. Inputs are read where the caller has them, and results
-// are written where the caller wants them.
+// registers: the results are those of the interpreter, bit for bit in arithmetic, and in sines
+// where the compiler fuses no more than is written. Inputs are read where the caller has them, and
+// results are written where the caller wants them.
 //
 // Registers are given out in one pass over the steps. Where none is left, the value that is needed
 // again last gives up its register (Belady 1966, which for code without branches is close to the

@@ -5,11 +5,11 @@
 //   q(t; p1) = S gamma(t) + w,     t (sqrt(2 H(p1)) - 1) = d,
 //
 // where w are whole periods of angles, S are signs, as of q and -q that are one rotation, and d is
-// by how much the rival is longer. These are n + 1
-// equations for p1 and t. Along their solutions d(d)/dt = p1(t).gamma'(t) - 1 in units of speed 1,
-// which is negative unless both arrive with one velocity: so t is a function of d as long as the
-// rival has no conjugate time there, and d is taken to zero by continuation. At d = 0 both meet,
-// and neither is the shortest any longer (a Maxwell point; Sachkov, ESAIM: COCV 16 (2010), sec. 3).
+// by how much the rival is longer. These are n + 1 equations for p1 and t. Along their solutions
+// d(d)/dt = p1(t).gamma'(t) - 1 in units of speed 1, which is negative unless both arrive with one
+// velocity: so t is a function of d as long as the rival has no conjugate time there, and d is
+// taken to zero by continuation. At d = 0 both meet, and neither is the shortest any longer (a
+// Maxwell point; Sachkov, ESAIM: COCV 16 (2010), sec. 3).
 #pragma once
 
 #include <optional>

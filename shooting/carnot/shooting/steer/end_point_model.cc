@@ -8,8 +8,8 @@
 namespace carnot::internal {
 EndPointModel::EndPointModel(const BoundaryValueProblem& problem, const Vector& p0) {
   constexpr double kSingular = 1e-11;
-  // Of p0, for differences. With 1e-4, 3e-4 and 1e-3 warm starts near the parking vehicle take 2.49,
-  // 3.11 and 4.59 flows for 2.38.
+  // Of p0, for differences. With 1e-4, 3e-4 and 1e-3 warm starts near the parking vehicle
+  // take 2.49, 3.11 and 4.59 flows for 2.38.
   constexpr double kAside = 3e-5;
   const Eigen::Index n = p0.size();
   const auto jacobian_at = [&](const Vector& aside) -> Matrix {
