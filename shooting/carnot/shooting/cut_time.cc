@@ -286,7 +286,43 @@ class CutSearch {
   bool interrupted_ = false;
 };
 
+// Whether the velocity at S z is S times the velocity at z, but for round-off.
+bool moves_alike(const Dynamics& dynamics,
+                 const std::vector<double>& z,
+                 const std::vector<double>& signs) {
+  constexpr double kRounding = 1e-10;
+  const std::size_t n = signs.size();
+  std::vector<double> there = z;
+  for (std::size_t j = 0; j < 2 * n; ++j) there[j] *= signs[j % n];
+  const Motion one = motion_at(dynamics, z.data());
+  Eigen::VectorXd other = motion_at(dynamics, there.data()).velocity;
+  for (std::size_t j = 0; j < n; ++j) other[static_cast<Eigen::Index>(j)] *= signs[j];
+  return (one.velocity - other).norm() <= kRounding * one.velocity.norm();
+}
+
 }  // namespace
+
+void check_signs(const Dynamics& dynamics,
+                 const std::vector<double>& from,
+                 const std::vector<double>& signs) {
+  if (signs.empty()) return;
+  const std::size_t n = from.size();
+  if (signs.size() != n) throw std::invalid_argument("signs need one number for each coordinate");
+  std::vector<double> p(n);
+  for (std::size_t j = 0; j < n; ++j) {
+    if (std::abs(signs[j]) != 1) throw std::invalid_argument("signs must be 1 or -1");
+    p[j] = std::cos(1.0 + static_cast<double>(j));
+  }
+  // Signs may be right at the start, which is a special place, or for special momenta. So a ray
+  // that moves in all coordinates is tried, at its start and where it has moved on.
+  const double speed = speed_of(dynamics, from, p);
+  for (double& x : p) x /= speed;
+  const Ray ray(dynamics, from, p);
+  for (const std::vector<double>& z : {ray.start(), ray.at(1, ray.enough_steps(1))}) {
+    if (z.empty() || moves_alike(dynamics, z, signs)) continue;
+    throw std::invalid_argument("the scene is another one where the signs are changed");
+  }
+}
 
 CutTime cut_time(const Dynamics& dynamics,
                  const std::vector<double>& from,
@@ -298,7 +334,7 @@ CutTime cut_time(const Dynamics& dynamics,
   }
   if (!(options.time_limit > 0)) throw std::invalid_argument("time_limit must be > 0");
   const double speed = validated_speed(dynamics, from, p0);
-  check_signs(dynamics, from, p0, options.signs);
+  check_signs(dynamics, from, options.signs);
   std::vector<double> p = p0;
   for (double& x : p) x /= speed;
   CutSearch search(dynamics, from, std::move(p), speed, options);

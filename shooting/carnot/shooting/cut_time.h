@@ -75,4 +75,10 @@ CutTime cut_time(const Dynamics& dynamics,
                  const std::vector<double>& p0,
                  const CutTimeOptions& options = {});
 
+// Throws std::invalid_argument unless these are signs as in CutTimeOptions, or nothing, and the
+// scene moves alike where they are changed.
+void check_signs(const Dynamics& dynamics,
+                 const std::vector<double>& from,
+                 const std::vector<double>& signs);
+
 }  // namespace carnot

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "carnot/numerics/parallel.h"
+#include "carnot/shooting/cut_time.h"
 #include "carnot/shooting/front/caustic_lines.h"
 #include "carnot/shooting/front/cut_values.h"
 #include "carnot/shooting/front/enclosed.h"
@@ -475,7 +476,7 @@ void check_wavefront(const Dynamics& dynamics,
   const UnitMomenta momenta(dynamics, from, options.fixed);
   const std::vector<double> p = momenta.momentum({Eigen::Vector3d::UnitX(), 0});
   (void)validated_speed(dynamics, from, p);
-  check_signs(dynamics, from, p, options.signs);
+  check_signs(dynamics, from, options.signs);
 }
 
 FrontMesh wavefront(const Dynamics& dynamics,

@@ -62,15 +62,22 @@ CutValue CutValues::searched(const std::vector<double>& p) {
   const std::vector<double> a = own.at(value.t, steps);
   const std::vector<double> b = other.at(value.t, steps);
   if (a.empty() || b.empty()) return value;
-  double as_it_is = 0;
-  double with_signs = options_.signs.empty() ? kInfinity : 0;
-  for (std::size_t j = 0; j < n; ++j) {
-    const double period = dynamics_.info.configuration[j].period;
-    if (period > 0) value.partner.offset[j] = period * std::round((b[j] - a[j]) / period);
-    as_it_is += std::abs(b[j] - a[j] - value.partner.offset[j]);
-    if (!options_.signs.empty()) with_signs += std::abs(b[j] - options_.signs[j] * a[j]);
+  // The partner ends at S a + offset, with whole turns in the offset; which S, is where it is so.
+  double closest = kInfinity;
+  for (const std::vector<double>& signs : {std::vector<double>{}, options_.signs}) {
+    std::vector<double> offset(n, 0.0);
+    double distance = 0;
+    for (std::size_t j = 0; j < n; ++j) {
+      const double period = dynamics_.info.configuration[j].period;
+      const double difference = b[j] - (signs.empty() ? a[j] : signs[j] * a[j]);
+      if (period > 0) offset[j] = period * std::round(difference / period);
+      distance += std::abs(difference - offset[j]);
+    }
+    if (!(distance < closest)) continue;
+    closest = distance;
+    value.partner.offset = std::move(offset);
+    value.partner.signs = signs;
   }
-  if (with_signs < as_it_is) value.partner.signs = options_.signs;
   return value;
 }
 

@@ -79,29 +79,6 @@ double validated_speed(const Dynamics& dynamics,
   return speed;
 }
 
-void check_signs(const Dynamics& dynamics,
-                 const std::vector<double>& from,
-                 const std::vector<double>& p,
-                 const std::vector<double>& signs) {
-  constexpr double kRounding = 1e-10;
-  if (signs.empty()) return;
-  const std::size_t n = from.size();
-  check(signs.size() == n, "signs need one number for each coordinate");
-  for (const double sign : signs) check(std::abs(sign) == 1, "signs must be 1 or -1");
-  // Also where the ray has moved on: the start may be a special place.
-  const Ray ray(dynamics, from, p);
-  for (const std::vector<double>& z : {ray.start(), ray.at(1, ray.enough_steps(1))}) {
-    if (z.empty()) continue;
-    std::vector<double> there = z;
-    for (std::size_t j = 0; j < 2 * n; ++j) there[j] *= signs[j % n];
-    const Motion one = motion_at(dynamics, z.data());
-    Eigen::VectorXd other = motion_at(dynamics, there.data()).velocity;
-    for (std::size_t j = 0; j < n; ++j) other[static_cast<Eigen::Index>(j)] *= signs[j];
-    check((one.velocity - other).norm() <= kRounding * one.velocity.norm(),
-          "the scene is another one where the signs are changed");
-  }
-}
-
 std::vector<double> Ray::start() const {
   std::vector<double> z = from_;
   z.insert(z.end(), p_.begin(), p_.end());

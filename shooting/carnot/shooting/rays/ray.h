@@ -31,12 +31,6 @@ double validated_speed(const Dynamics& dynamics,
                        const std::vector<double>& from,
                        const std::vector<double>& p);
 
-// Throws std::invalid_argument unless these are signs, or nothing, and the scene moves alike there.
-void check_signs(const Dynamics& dynamics,
-                 const std::vector<double>& from,
-                 const std::vector<double>& p,
-                 const std::vector<double>& signs);
-
 // Where an extremal is at a time, and how that depends on its momentum at the start.
 struct RayEnd {
   std::vector<double> z;    // (q, p)
