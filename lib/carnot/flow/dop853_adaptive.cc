@@ -57,11 +57,10 @@ int adaptive_rows(const SystemFunctions& functions) {
 }
 
 AdaptiveReport dop853_adaptive(const AdaptiveFlow& flow, double* z, double* memory) {
-  const auto& [functions, system, start, duration, tolerance] = flow;
+  const auto& [functions, system, start, duration, tolerance, most_steps] = flow;
   constexpr double kSafety = 0.8;
   constexpr double kMostShrink = 0.333;
   constexpr double kMostGrowth = 2;
-  constexpr long kMostSteps = 1L << 24;
   static const Tableau<double> kTableau = dop853_tableau<double>();
   const int size = 2 * functions.dof;
   double* const f = memory;
@@ -90,7 +89,7 @@ AdaptiveReport dop853_adaptive(const AdaptiveFlow& flow, double* z, double* memo
   const double sign = duration < 0 ? -1 : 1;
   double left = std::abs(duration);
   bool after_rejection = false;
-  while (left > 0 && report.steps + report.rejected < kMostSteps) {
+  while (left > 0 && report.steps + report.rejected < most_steps) {
     const bool last = h * 1.01 >= left;
     const double step = sign * (last ? left : h);
     const double t = start + duration - sign * left;

@@ -21,6 +21,7 @@ struct AdaptiveFlow {
   double start;
   double duration;
   double tolerance;
+  long most_steps = 1L << 24;  // with the rejected ones; where they do not do the flow fails
 };
 
 struct AdaptiveReport {

@@ -11,6 +11,9 @@ namespace {
 
 constexpr int W = kErasedLanes;
 constexpr double kTolerance = 1e-6;
+// Of 140,000 packs of a field of vehicles 97.5 per cent needed fewer than 86; the others, most of
+// them with momenta that lead nowhere, took half of all the time.
+constexpr long kMostSteps = 128;
 
 struct alignas(64) Row : std::array<double, W> {};
 
@@ -32,7 +35,7 @@ class Lanes {
   bool flow() {
     const Dynamics& dynamics = problem_.dynamics;
     const AdaptiveFlow flow{
-        *dynamics.functions, dynamics.system.get(), 0, problem_.time, kTolerance};
+        *dynamics.functions, dynamics.system.get(), 0, problem_.time, kTolerance, kMostSteps};
     return dop853_adaptive(flow, rows(0), rows(4 * n_)).completed;
   }
   // z' at the end of the flow. False where that fails in one of them.
