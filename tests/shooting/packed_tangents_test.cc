@@ -73,8 +73,8 @@ TEST(FieldNewton, FindsTheSameByPacksAndByTangentFlows) {
   std::array<FieldAttempt, 3> packed{attempt, attempt, attempt};
   std::array<FieldAttempt, 1> alone{attempt};
   long flows = 0;
-  FieldNewton(problem).solve(packed, flows);
-  FieldNewton(plain).solve(alone, flows);
+  FieldNewton(problem).solve(packed, FieldNewton::Care::kThorough, flows);
+  FieldNewton(plain).solve(alone, FieldNewton::Care::kThorough, flows);
   ASSERT_TRUE(alone[0].found);
   for (const FieldAttempt& one : packed) {
     ASSERT_TRUE(one.found);

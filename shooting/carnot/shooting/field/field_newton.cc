@@ -58,8 +58,10 @@ std::vector<double> FieldNewton::end(const SmallVector& p0, int factor) const {
   return z;
 }
 
-void FieldNewton::solve(std::span<FieldAttempt> attempts, long& flows) const {
-  if (tangents_of_a_pack(problem_.dynamics) > 0) solve_packed(attempts, flows);
+void FieldNewton::solve(std::span<FieldAttempt> attempts, Care care, long& flows) const {
+  const bool packed = tangents_of_a_pack(problem_.dynamics) > 0;
+  if (packed) solve_packed(attempts, flows);
+  if (packed && care == Care::kQuick) return;
   for (FieldAttempt& attempt : attempts) {
     if (attempt.found) continue;
     approach(attempt, attempt.point.p0);

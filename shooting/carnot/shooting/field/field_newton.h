@@ -28,8 +28,10 @@ class FieldNewton {
   // Keeps a reference.
   explicit FieldNewton(const BoundaryValueProblem& problem);
 
-  // All of them; `flows` counts tangent flows, one for each extremal of a pack.
-  void solve(std::span<FieldAttempt> attempts, long& flows) const;
+  // All of them; `flows` counts tangent flows, one for each extremal of a pack. Where extremals
+  // flow in packs, what those do not find is tried one by one only where care is thorough.
+  enum class Care { kQuick, kThorough };
+  void solve(std::span<FieldAttempt> attempts, Care care, long& flows) const;
   // One by tangent flows, with so many times the usual steps. False where there is none.
   bool solve(const std::vector<double>& target,
              FieldPoint& point,

@@ -1,6 +1,7 @@
 #include "carnot/shooting/field/field_wave.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace carnot::internal {
@@ -28,10 +29,15 @@ FieldWave::FieldWave(const BoundaryValueProblem& problem,
     : grid_(grid), points_(points), counts_(counts), newton_(problem) {}
 
 void FieldWave::push(const FieldPoint& from, std::size_t axis, const FieldGrid::Step& step) {
-  Push push{from, step.index, from.windings, SmallVector::Zero(from.p0.size()), 0};
+  Push push{from, step.index, from.windings, SmallVector::Zero(from.p0.size()), 0, 0};
   push.windings[axis] += step.turns;
   push.dq[grid_.axes[axis].coordinate] = step.length;
-  push.promise = from.action + from.p1.dot(push.dq) + 0.5 * push.dq.dot(from.slope * push.dq);
+  // Of 46,656 vehicles 34 had more than their mirror image has without slack, 25 with this one and
+  // 24 with twice as much, in the same time.
+  constexpr double kSlack = 0.5;
+  const double bending = 0.5 * push.dq.dot(from.slope * push.dq);
+  push.promise = from.action + from.p1.dot(push.dq) + bending;
+  push.slack = kSlack * std::abs(bending);
   add(std::move(push));
   // Two packs of ends. A field of 133,956 unicycles takes 91,374, 90,858 and 90,497 packs of
   // tangents with waves of 8, 16 and 32, which the points that they await cut short.
@@ -50,7 +56,7 @@ void FieldWave::add(Push push) {
 bool FieldWave::tempts(const Push& push) const {
   constexpr double kSameWay = 0.1;  // of the largest momentum
   if (!points_.known(push.to)) return true;
-  if (!points_.is_more(push.to, push.promise)) return false;
+  if (!points_.is_more(push.to, push.promise - push.slack)) return false;
   // What differs then is the error of the model, not the way.
   const SmallVector there = points_.p0(push.to);
   const SmallVector apart = push.from.p0 + push.from.inverse * push.dq - there;
@@ -79,7 +85,7 @@ void FieldWave::reach() {
       attempts_.push_back(std::move(one));
     }
   }
-  newton_.solve(attempts_, counts_.flows);
+  newton_.solve(attempts_, FieldNewton::Care::kQuick, counts_.flows);
   for (std::size_t i = 0; i < near.size(); ++i) take(*near[i], attempts_[i]);
 }
 
@@ -98,18 +104,27 @@ FieldAttempt FieldWave::attempt(const FieldPoint& from,
   return attempt;
 }
 
-bool FieldWave::reach_by_half(const Push& push, FieldPoint& point) {
-  std::vector<double> end = grid_.target(push.to, push.windings);
-  std::vector<double> middle = end;
-  const SmallVector step = 0.5 * push.dq;
-  for (Eigen::Index j = 0; j < step.size(); ++j) middle[j] -= step[j];
+bool FieldWave::reach_in_parts(const Push& push, FieldPoint& point) {
+  using Care = FieldNewton::Care;
+  constexpr double kLeast = 1.0 / 16;
+  const std::vector<double> end = grid_.target(push.to, push.windings);
   point = push.from;
-  for (const std::vector<double>* next : {&middle, &end}) {
-    FieldAttempt one = attempt(point, *next, step);
-    if (one.point.p0.size() == 0) return false;
-    newton_.solve({&one, 1}, counts_.flows);
-    if (!leads_on(push.from, one)) return false;
-    point = one.point;
+  double part = 0.5;
+  for (double done = 0; done < 1;) {
+    std::vector<double> next = end;
+    for (Eigen::Index j = 0; j < push.dq.size(); ++j) next[j] -= (1 - done - part) * push.dq[j];
+    FieldAttempt one = attempt(point, std::move(next), part * push.dq);
+    const Care care = part > kLeast ? Care::kQuick : Care::kThorough;
+    if (one.point.p0.size() > 0) newton_.solve({&one, 1}, care, counts_.flows);
+    if (leads_on(push.from, one)) {
+      point = one.point;
+      done += part;
+      part = std::min(2 * part, 1 - done);
+    } else if (part > kLeast) {
+      part /= 2;
+    } else {
+      return false;
+    }
   }
   return true;
 }
@@ -117,7 +132,7 @@ bool FieldWave::reach_by_half(const Push& push, FieldPoint& point) {
 void FieldWave::take(const Push& push, const FieldAttempt& attempt) {
   constexpr double kDoubt = 1e-6;  // relative; the model of a neighbour is not better than that
   FieldPoint point = attempt.point;
-  if (!leads_on(push.from, attempt) && !reach_by_half(push, point)) {
+  if (!leads_on(push.from, attempt) && !reach_in_parts(push, point)) {
     if (push.promise < (1 - kDoubt) * points_.action(push.to)) points_.doubt(push.to);
     return;
   }
