@@ -51,5 +51,31 @@ TEST(FieldGrid, StepsToNeighbours) {
   EXPECT_EQ(around.length, 2);
 }
 
+// A mirror takes an angle of 4 on a grid of 4, 2, 0 around 6 to -4, a turn below 2.
+TEST(FieldGrid, ReflectsPoints) {
+  constexpr double kTurn = 6;
+  const FieldGrid grid{{0, 7, 0}, {{0, {-1, 0, 1}, false, 0}, {2, {4, 2, 0}, true, kTurn}}};
+  const FieldGrid::Image image = grid.image(0, {0, 0}, {-1, 1, -1});
+  EXPECT_EQ(image.index, 7);  // 1, 7, 2
+  EXPECT_EQ(image.windings, (std::vector<int>{0, -1}));
+  EXPECT_EQ(grid.target(image.index, image.windings), (std::vector<double>{1, 7, -4}));
+  const FieldGrid::Image same = grid.image(7, {0, -1}, {1, 1, 1});
+  EXPECT_EQ(same.index, 7);
+  EXPECT_EQ(same.windings, image.windings);
+  EXPECT_EQ(grid.image(0, {0, 0}, {-1, -1, 1}).index, -1);  // y = -7 is not on the grid
+  const FieldGrid aside{{0, 0, 0}, {{0, {-1, 0, 1.5}, false, 0}}};
+  EXPECT_EQ(aside.image(2, {0}, {-1, 1, 1}).index, -1);
+}
+
+// What is known on one side of the mirror is known on the other.
+TEST_F(AcrossTheAxis, IsTheSameInMirrors) {
+  ASSERT_EQ(sweep.spread(1, {}), Spread::kSettled);
+  EXPECT_EQ(sweep.reflect(2), 3);
+  EXPECT_EQ(sweep.reflect(2), 0);
+  for (long i = 0; i < 3; ++i) {
+    EXPECT_NEAR(sweep.points().action(5 - i), sweep.points().action(i), 1e-10) << i;
+  }
+}
+
 }  // namespace
 }  // namespace carnot::internal::field_sweep_test

@@ -1,5 +1,7 @@
 #include "carnot/shooting/field/field_grid.h"
 
+#include <cmath>
+
 namespace carnot::internal {
 
 long FieldGrid::size() const {
@@ -45,6 +47,36 @@ FieldGrid::Step FieldGrid::step(long i, std::size_t axis, int direction) const {
   step.turns = up * wraps;
   step.length = along.values[next] - along.values[at] + step.turns * along.period;
   return step;
+}
+
+FieldGrid::Image FieldGrid::image(long i,
+                                  const std::vector<int>& windings,
+                                  const std::vector<double>& mirror) const {
+  constexpr double kSame = 1e-9;  // of a step
+  const std::vector<double> from = target(i, windings);
+  const std::vector<double> base = target(0);
+  Image image{0, {}};
+  std::vector<bool> has_axis(to.size(), false);
+  for (const Axis& axis : axes) {
+    const int j = axis.coordinate;
+    has_axis[j] = true;
+    const auto count = static_cast<long>(axis.values.size());
+    const double step = count > 1 ? axis.values[1] - axis.values[0] : 1;
+    // In steps from the first value, and then within the first period.
+    const double there = (mirror[j] * from[j] - axis.values[0]) / step;
+    const double period = axis.period / std::abs(step);
+    double within = there;
+    if (period > 0) within -= period * std::floor((there + kSame) / period);
+    const double at = std::round(within);
+    if (std::abs(within - at) > kSame || at < 0 || at >= static_cast<double>(count)) return {};
+    image.index = image.index * count + static_cast<long>(at);
+    const double turns = axis.period > 0 ? (there - at) * step / axis.period : 0;
+    image.windings.push_back(static_cast<int>(std::lround(turns)));
+  }
+  for (std::size_t j = 0; j < to.size(); ++j) {
+    if (!has_axis[j] && mirror[j] * base[j] != base[j]) return {};
+  }
+  return image;
 }
 
 }  // namespace carnot::internal

@@ -19,6 +19,11 @@ struct FieldGrid {
     int turns = 0;      // whole periods that its target lies beyond the one of its index
     double length = 0;  // of the coordinate, from here to there
   };
+  // Of a point in a mirror.
+  struct Image {
+    long index = -1;  // -1 where the grid has none
+    std::vector<int> windings;
+  };
   std::vector<double> to;
   std::vector<Axis> axes;  // the first one slowest
 
@@ -29,6 +34,10 @@ struct FieldGrid {
   [[nodiscard]] std::vector<double> target(long i, const std::vector<int>& windings) const;
   // One value up (direction 1) or down (-1) along an axis.
   [[nodiscard]] Step step(long i, std::size_t axis, int direction) const;
+  // Where the target of point i with its windings is in a mirror, 1 or -1 for each coordinate.
+  [[nodiscard]] Image image(long i,
+                            const std::vector<int>& windings,
+                            const std::vector<double>& mirror) const;
 };
 
 }  // namespace carnot::internal

@@ -23,12 +23,13 @@ FieldSweep::FieldSweep(const BoundaryValueProblem& problem, const FieldGrid& gri
 bool FieldSweep::seed(long i,
                       const std::vector<double>& p0,
                       const std::vector<int>& windings,
-                      int origin) {
+                      int origin,
+                      long& flows) {
   FieldPoint point;
   point.p0 = Eigen::Map<const Eigen::VectorXd>(p0.data(), n_);
   point.windings = windings;
   point.origin = origin;
-  if (!newton_.solve(target(i, windings), point, counts_.flows)) return false;
+  if (!newton_.solve(target(i, windings), point, flows)) return false;
   if (!points_.is_more(i, point.action)) return false;
   points_.put(i, point);
   return true;
@@ -109,6 +110,49 @@ Spread FieldSweep::spread(int threads, const Progress& progress, int most_sweeps
     known = static_cast<double>(count) / static_cast<double>(points_.size());
   }
   return Spread::kTired;
+}
+
+bool FieldSweep::reflect(long from, const std::vector<double>& mirror, long& flows) {
+  const FieldPoint point = points_.point(from);
+  const FieldGrid::Image image = grid_.image(from, point.windings, mirror);
+  std::vector<double> p0(n_);
+  for (int j = 0; j < n_; ++j) p0[j] = mirror[j] * point.p0[j];
+  return seed(image.index, p0, image.windings, point.origin, flows);
+}
+
+long FieldSweep::reflect(int threads) {
+  constexpr double kLess = 1e-9;  // relative; less is what the sweep's flows are good to
+  constexpr long kBlock = 256;
+  const auto blocks = static_cast<int>((points_.size() + kBlock - 1) / kBlock);
+  const std::vector<int> none(grid_.axes.size(), 0);
+  long improved = 0;
+  for (const std::vector<double>& mirror : problem_.dynamics.info.symmetries.mirrors) {
+    bool keeps_start = true;
+    for (int j = 0; j < n_; ++j) {
+      keeps_start = keeps_start && mirror[j] * problem_.from[j] == problem_.from[j];
+    }
+    if (!keeps_start) continue;
+    std::vector<FieldCounts> counts(blocks);
+    parallel_for(blocks, threads, [&](int block) {
+      for (long i = block * kBlock; i < std::min(points_.size(), (block + 1) * kBlock); ++i) {
+        // Each pair once, so that no two threads meet.
+        const long other = grid_.image(i, none, mirror).index;
+        if (other <= i || !(points_.known(i) || points_.known(other))) continue;
+        const auto action = [&](long k) {
+          return points_.known(k) ? points_.action(k) : std::numeric_limits<double>::infinity();
+        };
+        const long less = action(i) < action(other) ? i : other;
+        const long more = i + other - less;
+        if (!(action(less) < (1 - kLess) * action(more))) continue;
+        if (reflect(less, mirror, counts[block].flows)) ++counts[block].improved;
+      }
+    });
+    for (const FieldCounts& part : counts) {
+      counts_ += part;
+      improved += part.improved;
+    }
+  }
+  return improved;
 }
 
 std::vector<long> FieldSweep::doubtful() const {

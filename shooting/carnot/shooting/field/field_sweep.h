@@ -46,10 +46,15 @@ class FieldSweep {
   }
   // Takes an extremal to point i that was found otherwise, where it is better. False where it
   // does not lead there, or is no better.
-  bool seed(long i, const std::vector<double>& p0, const std::vector<int>& windings, int origin);
+  bool seed(long i, const std::vector<double>& p0, const std::vector<int>& windings, int origin) {
+    return seed(i, p0, windings, origin, counts_.flows);
+  }
   // Sweeps until nothing changes, at most so often. `progress` is told by all threads, the fraction
   // that was known after the last sweep.
   Spread spread(int threads, const Progress& progress, int most_sweeps = kMostSweeps);
+  // Gives each point the image of what its mirror images know where that is less; of the mirrors of
+  // the scene that keep the start. How many points that improved.
+  long reflect(int threads);
   // Points that neighbours promised less than they have, in vain, or which have nothing.
   [[nodiscard]] std::vector<long> doubtful() const;
   // max |q(T) - target| of a flow of twice as many steps, in these units; infinite where it fails.
@@ -58,6 +63,13 @@ class FieldSweep {
   double verify(long i, const std::vector<double>& units, double allowed);
 
  private:
+  bool seed(long i,
+            const std::vector<double>& p0,
+            const std::vector<int>& windings,
+            int origin,
+            long& flows);
+  // Takes the image of point `from` in a mirror to where it is, as seed() would.
+  bool reflect(long from, const std::vector<double>& mirror, long& flows);
   [[nodiscard]] double error_of(long i, const std::vector<double>& units, int factor) const;
   // Tells the neighbours of point i within [first, last) what it promises them.
   void push_all(long i, long first, long last, FieldWave& wave);
