@@ -74,6 +74,31 @@ TEST(SolveField, HasTheSymmetriesOfTheScene) {
   }
 }
 
+// A grid of four axes, which is coarse beside what the momenta of vehicles turn in a step.
+// (x, y, theta, phi) -> (x, -y, -theta, -phi) is a symmetry.
+TEST(SolveField, ReachesVehicles) {
+  FieldOptions options;
+  options.check = 8;
+  const int count = 7;
+  const Field field = solve_field(test::vehicle({0, 0, 0, 0}, {0, 0, 0, 0}),
+                                  {axis(0, -0.4, 0.4, 3),
+                                   axis(1, -0.4, 0.4, 3),
+                                   axis(2, -1.2, 0.4, count),
+                                   axis(3, -1.2, 0.4, count)},
+                                  options);
+  ASSERT_TRUE(field.finished);
+  EXPECT_EQ(field.lower, 0);
+  EXPECT_EQ(field.violations, 0);
+  EXPECT_LT(field.searches, 100);
+  const int inside = count * count;
+  for (int i = 0; i < 9 * inside; ++i) {
+    EXPECT_EQ(field.reason[i], Reason::kNone);
+    const int y = i / inside % 3;
+    const int mirrored = i - i % inside + 2 * (1 - y) * inside + inside - 1 - i % inside;
+    EXPECT_NEAR(field.action[i], field.action[mirrored], 1e-8 * field.action[i]) << i;
+  }
+}
+
 TEST(SolveField, DoesNotDependOnTheNumberOfThreads) {
   const Field one = unicycles(1);
   const Field three = unicycles(3);

@@ -1,8 +1,9 @@
 // The least action from one start to every point of a grid of targets.
 //
 // A few searches give extremals, each neighbour is reached from the one beside it by Newton's
-// method (field/field_sweep.h), and what neighbours do not explain is searched again: some thousand
-// points a second on each core, where searches alone solve some ten.
+// method (field/field_sweep.h), mirror images take what their originals have, and what neighbours
+// do not explain is searched again: with three coordinates some thousand points a second on each
+// core, with four some hundred, where searches alone solve some ten.
 #pragma once
 
 #include <cstdint>
@@ -51,8 +52,8 @@ struct Field {
   long flows = 0;     // tangent flows
   long sweeps = 0;    // of the longest spread
   // Three figures tell how far the field can be trusted. Points to which a neighbour promised less,
-  // by more than 1e-6 of it, where Newton's method found nothing: all of them or the last sample of
-  // them were searched in vain;
+  // by more than 1e-6 of it, where Newton's method found nothing: all of them were searched, or
+  // fewer than one in 32 of the last sample of them had less;
   long unkept = 0;
   long triangles = 0;   // pairs of neighbours with a path between them that was searched,
   long violations = 0;  // and points that are farther by more than 1e-8 than by way of the other;
