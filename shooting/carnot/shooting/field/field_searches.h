@@ -1,0 +1,44 @@
+// What searches without a guess gave to points of a field, in the units of the scene.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "carnot/shooting/field/field_grid.h"
+#include "carnot/shooting/find_geodesics.h"
+
+namespace carnot::internal {
+
+class FieldSearches {
+ public:
+  using Reports = std::map<long, GeodesicReport>;  // of points
+
+  // Keeps references.
+  FieldSearches(const BoundaryValueProblem& problem, const FieldGrid& grid)
+      : problem_(problem), grid_(grid) {}
+
+  // Searches these points on so many threads. It keeps nothing.
+  [[nodiscard]] Reports search(const std::vector<long>& points,
+                               const GeodesicOptions& options,
+                               int threads) const;
+  // The least of what was found for each point, and why nothing was.
+  void keep(const Reports& reports);
+
+  [[nodiscard]] bool tried(long i) const { return found_.contains(i) || failed_.contains(i); }
+  // What was found of point i, or nullptr.
+  [[nodiscard]] const Geodesic* geodesic(long i) const;
+  // Why nothing was found where it was tried.
+  [[nodiscard]] Reason failure(long i) const;
+  // Whether point i is the start, but for the round-off of equidistant values: the middle one of
+  // seven between -1.2 and 1.2 is 2.2e-16.
+  [[nodiscard]] bool rests(long i) const;
+
+ private:
+  const BoundaryValueProblem& problem_;
+  const FieldGrid& grid_;
+  std::map<long, Geodesic> found_;
+  std::map<long, Reason> failed_;
+};
+
+}  // namespace carnot::internal
