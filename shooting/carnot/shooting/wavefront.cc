@@ -150,11 +150,16 @@ class FrontMaker {
       for_all(first, last, [&](int i) {
         if (!go_on()) return;
         const Ray ray(dynamics_, from_, momentum(i));
-        times_[i] = options_.what == FrontKind::kCut
-                        ? cuts_[i].t
-                        : conjugate_time(ray, horizon_, options_.order);
-        if (!(times_[i] <= kFarthest * options_.length)) return;
-        const std::vector<double> z = ray.at(times_[i], ray.enough_steps(times_[i]));
+        ConjugatePoint point;
+        if (options_.what == FrontKind::kCut) {
+          point.t = cuts_[i].t;
+        } else {
+          point = conjugate_point(ray, horizon_, options_.order);
+        }
+        times_[i] = point.t;
+        if (!(point.t <= kFarthest * options_.length)) return;
+        const std::vector<double> z =
+            point.z.empty() ? ray.at(point.t, ray.enough_steps(point.t)) : point.z;
         if (!z.empty()) std::copy_n(z.begin(), n_, ends_.begin() + static_cast<long>(i) * n_);
       });
     }

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <map>
 #include <numbers>
 #include <set>
+#include <unordered_map>
 #include <utility>
 
 namespace carnot::internal {
@@ -45,6 +48,12 @@ double bend(const Point& a, const Point& b, const Point& c, const Point& d) {
   return std::numbers::pi - std::acos(std::clamp(cd / std::sqrt(cc * dd), -1.0, 1.0));
 }
 
+struct EdgeHash {
+  std::size_t operator()(const Edge& edge) const {
+    return std::hash<std::int64_t>()((static_cast<std::int64_t>(edge.first) << 32) + edge.second);
+  }
+};
+
 // The segments that ask to be cut.
 std::set<Edge> segments_to_cut(const Refinement& how, const Surface& surface) {
   std::vector<std::vector<int>> others(surface.vertices.size());
@@ -73,7 +82,9 @@ std::set<Edge> segments_to_cut(const Refinement& how, const Surface& surface) {
 
 // The edges of triangles that ask to be cut.
 std::set<Edge> edges_to_cut(const Refinement& how, const Surface& surface) {
-  std::map<Edge, int> opposite;  // of the first triangle that has the edge
+  // Of the first triangle that has the edge. Nothing depends on the order.
+  std::unordered_map<Edge, int, EdgeHash> opposite;
+  opposite.reserve(3 * surface.triangles.size() / 2);
   std::set<Edge> cut;
   const auto image = [&](int i) -> const Point& { return surface.vertices[i].image; };
   for (const auto& triangle : surface.triangles) {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <span>
 
+#include "carnot/shooting/linear/bracketed_newton.h"
 #include "carnot/shooting/linear/dense.h"
-#include "carnot/shooting/linear/illinois.h"
 
 namespace carnot::internal {
 namespace {
@@ -27,16 +27,17 @@ struct Node {
   SmallMatrix p;
 };
 
-// Eigenvalues of F at the end of a step, ascending, and how many count as negative.
+// F at the end of a step: eigenvalues, ascending, and how many count as negative.
 struct Form {
-  SmallVector values;
+  SymmetricEigen eigen;
   int negative = 0;
+  SmallMatrix lift;  // A^-T P, and dF/dt = lift' H_pp lift
 };
 
 Form form_of(const SmallMatrix& f, double size) {
   Form form;
-  form.values = symmetric_eigen(0.5 * (f + f.transpose())).values;
-  form.negative = static_cast<int>((form.values.array() < -kRounding * size).count());
+  form.eigen = symmetric_eigen(0.5 * (f + f.transpose()));
+  form.negative = static_cast<int>((form.eigen.values.array() < -kRounding * size).count());
   return form;
 }
 
@@ -75,8 +76,10 @@ Advance advance(const Dynamics& dynamics, const Node& from, double t, Node& to, 
       m.bottomLeftCorner(n, n).lazyProduct(from.x) + m.bottomRightCorner(n, n).lazyProduct(from.p);
   if (!to.x.allFinite() || !to.p.allFinite()) return Advance::kFailed;
   if (!stayed_regular(a)) return Advance::kTooLong;
-  const SmallMatrix back = small_lu_inverse(a).lazyProduct(to.x);
+  const SmallMatrix inverse = small_lu_inverse(a);
+  const SmallMatrix back = inverse.lazyProduct(to.x);
   form = form_of(from.p.transpose().lazyProduct(back), from.p.norm() * back.norm());
+  form.lift = inverse.transpose().lazyProduct(from.p);
   return Advance::kDone;
 }
 
@@ -114,7 +117,7 @@ class Count {
         form_of(node_.p.transpose().lazyProduct(node_.x), node_.p.norm() * node_.x.norm());
     const int passed = std::max(0, before.negative - form.negative);
     if (passed >= left_) {
-      found = locate(before, form, t);
+      locate(before, form, std::move(next));
       return true;
     }
     left_ -= passed;
@@ -122,21 +125,36 @@ class Count {
     return true;
   }
 
-  std::optional<double> found;
+  // The phase point that has been reached.
+  [[nodiscard]] const std::vector<double>& z() const { return node_.z; }
+
+  std::optional<ConjugatePoint> found;
 
  private:
-  // The zero of the eigenvalue that has `left_` - 1 negative ones above it, before t.
-  [[nodiscard]] double locate(const Form& before, const Form& after, double t) const {
-    constexpr double kEnough = 1e-14;  // relative
+  // The zero of the eigenvalue that has `left_` - 1 negative ones above it, before the node `end`.
+  void locate(const Form& before, const Form& after, Node end) {
+    constexpr double kNear = 1e-8;  // relative
     const int which = before.negative - left_;
+    const double t = end.t;
+    Node last = std::move(end);
     Node middle;
     Form form;
-    const auto value_at = [&](double at) {
-      return advance(dynamics_, node_, at, middle, form) == Advance::kDone
-                 ? std::optional(form.values[which])
-                 : std::nullopt;
+    const auto value_at = [&](double at) -> std::optional<ValueAndSlope> {
+      if (advance(dynamics_, node_, at, middle, form) != Advance::kDone) return std::nullopt;
+      std::swap(middle, last);
+      return ValueAndSlope{form.eigen.values[which], rate_of(form, which, last.z)};
     };
-    return illinois(node_.t, before.values[which], t, after.values[which], kEnough * t, value_at);
+    (void)bracketed_newton(
+        node_.t, before.eigen.values[which], t, after.eigen.values[which], kNear * t, value_at);
+    found = ConjugatePoint{last.t, std::move(last.z)};
+  }
+
+  // Of an eigenvalue, at the phase point z. H_pp w is the velocity at (q, w): H is quadratic in p.
+  [[nodiscard]] double rate_of(const Form& form, int which, const std::vector<double>& z) const {
+    const Eigen::VectorXd w = form.lift * form.eigen.vectors.col(which);
+    std::vector<double> at = z;
+    std::copy(w.begin(), w.end(), at.begin() + dynamics_.dof);
+    return w.dot(motion_at(dynamics_, at.data()).velocity);
   }
 
   const Dynamics& dynamics_;
@@ -146,23 +164,29 @@ class Count {
 
 }  // namespace
 
-double conjugate_time(const Ray& ray, double horizon, int order) {
+ConjugatePoint conjugate_point(const Ray& ray, double horizon, int order) {
   // How many steps are enough is found for stretches that double: most rays are conjugate early.
   constexpr double kFirst = 0.125;
   Count count(ray, order);
-  double t = 0;
+  double begin = 0;
+  double h = horizon;  // was enough before
   for (double part = kFirst; part <= 1; part *= 2) {
-    const double end = part * horizon;
-    const double h = end / static_cast<double>(ray.enough_steps(end));
-    const long steps = std::max(1L, std::lround((end - t) / h));
-    const double begin = t;
+    const double length = part * horizon - begin;
+    const long fewest = std::max(1L, std::lround(length / h));
+    const long steps = enough_steps(ray.dynamics(), count.z(), length, fewest);
+    h = length / static_cast<double>(steps);
     for (long i = 1; i <= steps; ++i) {
-      t = begin + (end - begin) * static_cast<double>(i) / static_cast<double>(steps);
-      if (!count.go_to(t)) return std::numeric_limits<double>::quiet_NaN();
+      const double t = begin + length * static_cast<double>(i) / static_cast<double>(steps);
+      if (!count.go_to(t)) return {std::numeric_limits<double>::quiet_NaN(), {}};
       if (count.found) return *count.found;
     }
+    begin = part * horizon;
   }
-  return std::numeric_limits<double>::infinity();
+  return {std::numeric_limits<double>::infinity(), {}};
+}
+
+double conjugate_time(const Ray& ray, double horizon, int order) {
+  return conjugate_point(ray, horizon, order).t;
 }
 
 }  // namespace carnot::internal

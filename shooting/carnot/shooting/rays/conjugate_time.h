@@ -10,15 +10,27 @@
 // grows (H_pp >= 0). So the eigenvalues of F grow, and the step passes as many conjugate times as F
 // loses negative ones, also where several of them vanish at once and det X keeps its sign. The j-th
 // of these times is a simple zero of one eigenvalue, counted from below. A step at which A is not
-// well regular is halved.
+// well regular is halved. With M symplectic, A^-1 B changes at the rate A^-1 H_pp A^-T, so the
+// eigenvalue with the unit vector v changes at the rate w'H_pp w, w = A^-T P v, and its zero is
+// found by Newton's method.
 #pragma once
+
+#include <vector>
 
 #include "carnot/shooting/rays/ray.h"
 
 namespace carnot::internal {
 
-// The one of this order, counted with multiplicity; order 1 is the first. Infinite where there are
-// fewer up to `horizon`, NaN where the flow fails.
+// A conjugate time, and the phase point (q, p) there. The time is infinite where there is none up
+// to the horizon, and NaN where the flow fails; then there is no point.
+struct ConjugatePoint {
+  double t = 0;
+  std::vector<double> z;
+};
+
+// The one of this order, counted with multiplicity; order 1 is the first. Cost: on the unicycle
+// some 15 steps with their tangents, of which 7 are those of the last steps' zero.
+ConjugatePoint conjugate_point(const Ray& ray, double horizon, int order = 1);
 double conjugate_time(const Ray& ray, double horizon, int order = 1);
 
 }  // namespace carnot::internal

@@ -79,6 +79,27 @@ double validated_speed(const Dynamics& dynamics,
   return speed;
 }
 
+long enough_steps(const Dynamics& dynamics, const std::vector<double>& z, double t, long fewest) {
+  constexpr long kMost = 1L << 14;
+  const int n = dynamics.dof;
+  const auto end = [&](long steps) {
+    std::vector<double> at = z;
+    if (!dynamics.flow(StepPlan::equal(0, t, steps), at).completed()) at.clear();
+    return at;
+  };
+  std::vector<double> coarse = end(fewest);
+  for (long steps = fewest; steps < kMost; steps *= 2) {
+    std::vector<double> fine = end(2 * steps);
+    const bool both = !coarse.empty() && !fine.empty();
+    if (both && same_numbers(coarse.data(), fine.data(), n) &&
+        same_numbers(&coarse[n], &fine[n], n)) {
+      return steps;
+    }
+    coarse = std::move(fine);
+  }
+  return kMost;
+}
+
 std::vector<double> Ray::start() const {
   std::vector<double> z = from_;
   z.insert(z.end(), p_.begin(), p_.end());
@@ -102,18 +123,7 @@ std::optional<RayEnd> Ray::end(double t, long steps) const {
 
 long Ray::enough_steps(double t) const {
   constexpr long kFewest = 8;
-  constexpr long kMost = 1L << 14;
-  std::vector<double> coarse = at(t, kFewest);
-  for (long steps = kFewest; steps < kMost; steps *= 2) {
-    std::vector<double> fine = at(t, 2 * steps);
-    const bool both = !coarse.empty() && !fine.empty();
-    if (both && same_numbers(coarse.data(), fine.data(), dynamics_->dof) &&
-        same_numbers(&coarse[dynamics_->dof], &fine[dynamics_->dof], dynamics_->dof)) {
-      return steps;
-    }
-    coarse = std::move(fine);
-  }
-  return kMost;
+  return internal::enough_steps(*dynamics_, start(), t, kFewest);
 }
 
 BoundaryValueProblem Ray::problem(double t, long steps) const {

@@ -37,6 +37,10 @@ struct RayEnd {
   Eigen::MatrixXd tangent;  // 2n x n, d(q, p)/dp(0)
 };
 
+// The fewest steps from z over a time t, `fewest` of them or doublings of that, for which halving
+// them changes the end by round-off only.
+long enough_steps(const Dynamics& dynamics, const std::vector<double>& z, double t, long fewest);
+
 class Ray {
  public:
   // With the momentum p at the start; keeps a reference to the dynamics.
@@ -51,7 +55,7 @@ class Ray {
   // The phase point at time t; empty where the flow fails.
   [[nodiscard]] std::vector<double> at(double t, long steps) const;
   [[nodiscard]] std::optional<RayEnd> end(double t, long steps) const;
-  // The fewest steps, doubling, for which halving them changes the end at t by round-off only.
+  // From the start to t, from eight on.
   [[nodiscard]] long enough_steps(double t) const;
   // From the start to where the ray is at time t, in that time.
   [[nodiscard]] BoundaryValueProblem problem(double t, long steps) const;
