@@ -7,8 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "carnot/load_scene.h"
 #include "carnot/shooting/continuation.h"
 #include "carnot/shooting/find_geodesics.h"
+#include "shooting/drift_problems.h"
 #include "shooting/problems.h"
 
 namespace carnot::limited_continuation_test {
