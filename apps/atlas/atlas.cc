@@ -3,16 +3,18 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <functional>
-#include <map>
 #include <memory>
 #include <utility>
 
 #include "atlas/atlas_output.h"
 #include "atlas/atlas_plot.h"
 #include "atlas/atlas_record.h"
+#include "atlas/atlas_summary.h"
 #include "atlas/crew.h"
 #include "atlas/field_report.h"
+#include "atlas/field_state.h"
 #include "atlas/journal.h"
 #include "atlas/models.h"
 #include "atlas/problem_list.h"
@@ -26,7 +28,6 @@
 #include "text/numbers.h"
 #include "text/output_file.h"
 #include "text/progress_bar.h"
-#include "text/text_table.h"
 #include "text/version.h"
 
 namespace carnot::apps {
@@ -44,10 +45,10 @@ each. What is done is kept in OUTPUT.journal until all is: after Ctrl-C, a kill 
 call with --resume goes on, and writes what an undisturbed one would have written, but for `seconds`,
 which --no-times leaves out. Lines may have been added to the file of problems since, or N may be more.
 With --field the points of a grid are reached from their neighbours by Newton's method, and only some
-are searched: thousands a second on each core. It keeps the geodesic of least action, and is not
-resumed. Three figures tell how far it can be trusted: promises of less by a neighbour that were not
-kept, triangles between neighbours that are violated, and points that had less when --check of them were
-searched again. A FILE.field has distances alone, for planners: DistanceField in C++ reads it.
+are searched: thousands a second on each core. It keeps the geodesic of least action; its state is kept
+in OUTPUT.journal.state, from which --resume goes on. Three figures tell how far it can be trusted:
+promises of less by a neighbour that were not kept, triangles between neighbours that are violated, and
+points that had less when --check of them were searched again. A FILE.field has distances alone, for planners: DistanceField in C++ reads it.
 In a build with CARNOT_MPI=ON the same call works on many ranks, under mpirun or srun; a field is
 solved by one of them. docs/clusters.md says how, and what to expect.
 
@@ -104,40 +105,9 @@ Json identity_of(const AtlasCall& call, const Run& run, Json problems) {
             {"limits", search.asked.limits},
             {"discs", search.asked.discs},
             {"trajectories", call.trajectories},
-            {"field", call.field}}},
+            {"field", call.field},
+            {"check", call.check}}},
           {"problems", std::move(problems)}};
-}
-
-// What came of all of them.
-struct Summary {
-  long solved = 0;
-  std::map<std::string, long> labels;  // of the least
-  std::map<std::string, long> reasons;
-};
-
-void count(const Json& record, Summary& summary) {
-  const Json& geodesics = record.at("geodesics");
-  if (geodesics.empty()) {
-    ++summary.reasons[record.at("reason").get<std::string>()];
-    return;
-  }
-  ++summary.solved;
-  ++summary.labels[geodesics[0].at("label").get<std::string>()];
-}
-
-std::string atlas_text(const Json& json) {
-  std::vector<std::vector<std::string>> rows;
-  for (const char* key : {"scene", "problems", "solved", "failed", "resumed", "repaired"}) {
-    const Json& value = json.at(key);
-    const bool quiet =
-        (std::string(key) == "resumed" || std::string(key) == "repaired") && value.get<long>() == 0;
-    if (!quiet) rows.push_back({key, value.is_string() ? value.get<std::string>() : value.dump()});
-  }
-  for (const char* key : {"labels", "reasons"}) {
-    for (const auto& [name, number] : json.at(key).items()) rows.push_back({name, number.dump()});
-  }
-  rows.push_back({"wall time", fmt::format("{:.3g} s", json.at("elapsed_seconds").get<double>())});
-  return text_table(rows);
 }
 
 class Atlas {
@@ -184,7 +154,7 @@ class Atlas {
     if (!lead(ranks, work, journal, run_.destination.quiet)) {
       return interrupted_after(journal, work);
     }
-    const Summary summary =
+    const AtlasSummary summary =
         write([&](const auto& visit) { for_records(journal, work.chunks(), visit); });
     journal.remove();
     Result result;
@@ -195,26 +165,35 @@ class Atlas {
     return deliver_with_plot(result);
   }
 
-  // Nothing is kept of a field that is not done: it takes seconds.
   int work_on_field() {
     std::vector<FieldAxis> axes;
     for (const Axis& axis : list_->axes()) axes.push_back({axis.coordinate, axis.values});
     const BoundaryValueProblem asked = problem_between(run_.dynamics, problem(0).ends);
-    FieldOptions options;
-    options.search = options_;
-    options.threads = run_.threads;
-    options.check = parse_integer("--check", call_.check, 0, 1000000);
+    const std::string path = call_.output + ".journal";
+    const bool goes_on = call_.resume && std::filesystem::exists(path);
+    Journal journal(path, journal_call(), call_.resume);
+    FieldState state(path);
+    if (!goes_on) state.remove();
+    bool damaged = false;
     Field field;
-    {
-      ProgressBar bar("points", static_cast<double>(list_->size()), run_.destination.quiet);
-      options.progress = bar.callback();
-      field = solve_field(asked, axes, options);
+    try {
+      field = solve_field(asked, axes, state, damaged);
+    } catch (...) {
+      if (!state.exists()) journal.remove();
+      throw;
     }
-    if (!field.finished) return kInterrupted;
+    if (!field.finished) {
+      if (state.exists()) {
+        complain("the field is not done: the same call with --resume goes on");
+      } else {
+        journal.remove();
+      }
+      return kInterrupted;
+    }
     const auto records = [&](const auto& visit) {
       for (long i = 0; i < list_->size(); ++i) visit(field_record(i, problem(i), field));
     };
-    Summary summary;
+    AtlasSummary summary;
     if (has_ending(call_.output, kDistances)) {
       records([&](const Json& record) { note(record, summary); });
       NewFile file(call_.output);
@@ -223,14 +202,40 @@ class Atlas {
     } else {
       summary = write(records);
     }
+    state.remove();
+    journal.remove();
     Result result;
-    result.json = summary_json(summary, 0, 0);
+    result.json = summary_json(summary, field.resumed, journal.repaired() + (damaged ? 1 : 0));
     result.json["field"] = field_json(field);
     result.json["elapsed_seconds"] = field.elapsed_seconds;
     result.text = [&] {
       return atlas_text(result.json) + field_text(field) + "written: " + call_.output + '\n';
     };
     return deliver_with_plot(result);
+  }
+
+  // From what an earlier call has left; where that is `damaged`, from the beginning.
+  [[nodiscard]] Field solve_field(const BoundaryValueProblem& asked,
+                                  const std::vector<FieldAxis>& axes,
+                                  FieldState& state,
+                                  bool& damaged) const {
+    FieldOptions options;
+    options.search = options_;
+    options.threads = run_.threads;
+    options.check = parse_integer("--check", call_.check, 0, 1000000);
+    options.keep = [&state](const auto& write) { state.keep(write); };
+    ProgressBar bar("points", static_cast<double>(list_->size()), run_.destination.quiet);
+    options.progress = bar.callback();
+    options.state = state.earlier();
+    if (options.state != nullptr) {
+      try {
+        return carnot::solve_field(asked, axes, options);
+      } catch (const DamagedState&) {
+        damaged = true;
+        options.state = nullptr;
+      }
+    }
+    return carnot::solve_field(asked, axes, options);
   }
 
   int deliver_with_plot(Result& result) const {
@@ -247,8 +252,8 @@ class Atlas {
     if (search.asked.any() || !run_.dynamics.info.limits.empty()) {
       refuse("--field", "", "knows no limits", "a grid without --field");
     }
-    if (list_->has_free() || run_.samples > 0 || call_.resume) {
-      refuse("--field", "", "does without free ends, --trajectories and --resume", "none of these");
+    if (list_->has_free() || run_.samples > 0) {
+      refuse("--field", "", "does without free ends and --trajectories", "none of these");
     }
     if (has_ending(call_.output, kDistances)) check_distances();
   }
@@ -265,7 +270,7 @@ class Atlas {
     }
   }
 
-  [[nodiscard]] Json summary_json(const Summary& summary, long resumed, long repaired) const {
+  [[nodiscard]] Json summary_json(const AtlasSummary& summary, long resumed, long repaired) const {
     Json json = result_head(arguments_);
     json["scene"] = run_.entry->info.name;
     json["parameters"] = parameters_json(run_);
@@ -293,9 +298,8 @@ class Atlas {
     return problem;
   }
 
-  // Throws where there is none; the other ranks are told, and what a chunk is. A journal that was
-  // begun with a shorter list keeps its chunks.
-  std::unique_ptr<Journal> open_journal(Ranks& ranks) const {
+  // What the journal says of this call. One that was begun with a shorter list keeps its chunks.
+  [[nodiscard]] JournalCall journal_call() const {
     const auto words = [this](const Json& problems, const Json& chunk) {
       Json json = identity_of(call_, run_, problems);
       json["chunk"] = chunk;
@@ -304,12 +308,18 @@ class Atlas {
     const auto chunk_in = [](const Json& there) { return there.value("chunk", Json(nullptr)); };
     JournalCall call;
     call.words = words(list_->identity(), chunk_of(list_->size()));
-    call.then = [&](const Json& there) {
+    call.then = [=, this](const Json& there) {
       return words(list_->identity_then(there.value("problems", Json::object())), chunk_in(there));
     };
-    call.now = [&](const Json& there) { return words(list_->identity(), chunk_in(there)); };
+    call.now = [=, this](const Json& there) { return words(list_->identity(), chunk_in(there)); };
+    return call;
+  }
+
+  // Throws where there is none; the other ranks are told, and what a chunk is.
+  std::unique_ptr<Journal> open_journal(Ranks& ranks) const {
     try {
-      auto journal = std::make_unique<Journal>(call_.output + ".journal", call, call_.resume);
+      auto journal =
+          std::make_unique<Journal>(call_.output + ".journal", journal_call(), call_.resume);
       (void)ranks.agree(journal->words().at("chunk").get<long>());
       return journal;
     } catch (...) {
@@ -369,7 +379,7 @@ class Atlas {
 
   // `records(visit)` visits all of them, in the order of the problems.
   template <class Records>
-  Summary write(const Records& records) const {
+  AtlasSummary write(const Records& records) const {
     AtlasLayout layout;
     layout.coordinates = coordinate_names(*run_.entry);
     layout.axes = list_->axes();
@@ -382,7 +392,7 @@ class Atlas {
     layout.times = !call_.no_times;
     layout.free_ends = list_->has_free();
     layout.head = identity_of(call_, run_, list_->identity());
-    Summary summary;
+    AtlasSummary summary;
     NewFile file(call_.output);
     {
       const auto writer = make_atlas_writer(file.temporary(), call_.output, layout);
@@ -396,8 +406,8 @@ class Atlas {
     return summary;
   }
 
-  void note(const Json& record, Summary& summary) const {
-    count(record, summary);
+  void note(const Json& record, AtlasSummary& summary) const {
+    summary.add(record);
     if (plot_) plot_->add(record);
   }
 

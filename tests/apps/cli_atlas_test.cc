@@ -290,6 +290,51 @@ TEST_F(AtlasTest, FieldsAgreeWithSearches) {
   }
 }
 
+// A field that was killed goes on from the state that it has kept, and becomes the same.
+TEST_F(AtlasTest, FieldsGoOn) {
+  const Words grid{"atlas",
+                   "unicycle",
+                   "--from",
+                   "0,0,0",
+                   "--grid",
+                   "x=-3:3:37, y=-3:3:37, theta=-pi:pi:36",
+                   "--mod-angles",
+                   "--field",
+                   "--check",
+                   "20",
+                   "--quiet",
+                   "--output"};
+  ASSERT_EQ(sandbox.run(with(grid, {"whole.jsonl"})).status, 0);
+  const auto exists = [&](const char* name) {
+    return std::filesystem::exists(sandbox.directory() / name);
+  };
+  for (int k = 0; k < 100 && !exists("a.jsonl.journal.state"); ++k) {
+    ASSERT_FALSE(exists("a.jsonl")) << "it is done before anything is kept";
+    Words call = with(grid, {"a.jsonl"});
+    if (exists("a.jsonl.journal")) call.emplace_back("--resume");
+    (void)sandbox.run(call, "timeout -s KILL " + std::to_string(0.6 + 0.1 * k));
+  }
+  // A state that is damaged is as good as none.
+  put("b.jsonl.journal", text_of("a.jsonl.journal"));
+  put("b.jsonl.journal.state", text_of("a.jsonl.journal.state").replace(1000, 1, "?"));
+  const Outcome repaired = sandbox.run(with(grid, {"b.jsonl", "--resume", "--json"}));
+  ASSERT_EQ(repaired.status, 0) << repaired.err;
+  EXPECT_EQ(repaired.json()["repaired"], 1);
+  EXPECT_EQ(repaired.json()["resumed"], 0);
+  EXPECT_EQ(text_of("b.jsonl"), text_of("whole.jsonl"));
+  expect_refused(with(grid, {"a.jsonl"}), HasSubstr("--resume to go on"), sandbox);
+  expect_refused(with(grid, {"a.jsonl", "--resume", "--seed", "1"}), HasSubstr("seed is"), sandbox);
+  const Outcome stopped = sandbox.run(with(grid, {"a.jsonl", "--resume"}), stopped_after("0.2"));
+  EXPECT_EQ(stopped.status, 130);
+  EXPECT_THAT(stopped.err, HasSubstr("--resume goes on"));
+  const Outcome outcome = sandbox.run(with(grid, {"a.jsonl", "--resume", "--json"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_GT(outcome.json()["resumed"], 0);
+  EXPECT_EQ(outcome.json()["repaired"], 0);
+  EXPECT_EQ(text_of("a.jsonl"), text_of("whole.jsonl"));
+  EXPECT_THAT(sandbox.files(), UnorderedElementsAre("a.jsonl", "b.jsonl", "whole.jsonl"));
+}
+
 TEST_F(AtlasTest, WritesDistancesForPlanners) {
   const Outcome outcome = sandbox.run({"atlas",
                                        "unicycle",

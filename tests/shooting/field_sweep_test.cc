@@ -30,7 +30,7 @@ TEST_F(AcrossTheAxis, DoesNotCarryAnExtremalBeyondItsConjugatePoint) {
 }
 
 TEST_F(AcrossTheAxis, SaysWhereSweepsWereNotEnough) {
-  EXPECT_EQ(sweep.spread(1, {}, 1), Spread::kTired);
+  EXPECT_EQ(sweep.spread(1, {}, {}, 1), Spread::kTired);
   EXPECT_EQ(sweep.spread(1, {}), Spread::kSettled);
   EXPECT_EQ(sweep.spread(1, [](double) { return false; }), Spread::kStopped);
 }

@@ -11,6 +11,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "carnot/numerics/checksum.h"
+
 namespace carnot {
 namespace {
 
@@ -24,11 +26,10 @@ float rounded_down(double x) {
 
 float rounded_up(double x) { return -rounded_down(-x); }
 
-// FNV-1a of 64 bits (Fowler, Noll and Vo).
 std::uint64_t checksum_of(const std::string& bytes) {
-  std::uint64_t sum = 14695981039346656037U;
-  for (const char byte : bytes) sum = (sum ^ static_cast<unsigned char>(byte)) * 1099511628211U;
-  return sum;
+  Checksum sum;
+  sum.add(bytes);
+  return sum.value();
 }
 
 // Four bytes each, the lowest first.

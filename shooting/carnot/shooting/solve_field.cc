@@ -4,8 +4,8 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <limits>
-#include <map>
 #include <optional>
 #include <random>
 #include <set>
@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "carnot/numerics/parallel.h"
+#include "carnot/shooting/field/field_bytes.h"
 #include "carnot/shooting/field/field_jumps.h"
 #include "carnot/shooting/field/field_sample.h"
 #include "carnot/shooting/field/field_searches.h"
@@ -115,16 +116,27 @@ class FieldSolver {
 
   Field run() {
     const auto began = std::chrono::steady_clock::now();
+    try {
+      if (options_.state != nullptr) read(*options_.state);
+    } catch (const DamagedBytes& damaged) {
+      throw DamagedState(damaged.what());
+    }
     Field field;
-    field.finished = spread_from_seeds() && settle() && check(field);
+    for (long i = 0; i < grid_.size(); ++i) field.resumed += sweep_.points().known(i) ? 1 : 0;
+    field.finished = work();
     if (field.finished) collect(field);
-    field.searches = count_;
+    field.searches = course_.searches;
+    field.triangles = course_.triangles;
+    field.violations = course_.violations;
+    field.checked = course_.checked;
+    field.lower = course_.lower;
+    field.bound = upper_share(course_.lower, course_.checked);
     const FieldCounts& counts = sweep_.counts();
     field.pushes = counts.pushes;
     field.improved = counts.improved;
     field.flows = counts.flows;
     field.sweeps = counts.sweeps;
-    field.settled = settled_;
+    field.settled = course_.settled;
     for (const long i : sweep_.doubtful()) field.unkept += sweep_.points().known(i) ? 1 : 0;
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - began;
     field.elapsed_seconds = elapsed.count();
@@ -132,6 +144,85 @@ class FieldSolver {
   }
 
  private:
+  static constexpr std::size_t kFewestJumps = 16;
+  enum class Phase : std::int8_t { kSeeds, kDoubts, kJumps, kCheck, kDone };
+  // Where the work is.
+  struct Course {
+    Phase phase = Phase::kSeeds;
+    bool spreading = false;  // before anything else
+    bool settled = true;
+    bool in_vain = false;                // the last sample of doubted points had hardly any less
+    std::size_t at_once = kFewestJumps;  // points beyond jumps that are searched
+    int round = 0;                       // of the check
+    long searches = 0;
+    long triangles = 0;
+    long violations = 0;
+    long checked = 0;
+    long lower = 0;
+  };
+
+  // False where it was stopped.
+  bool work() {
+    while (course_.spreading || course_.phase != Phase::kDone) {
+      if (!(course_.spreading ? spread() : search_on())) return false;
+      keep();
+    }
+    return true;
+  }
+  bool search_on() {
+    switch (course_.phase) {
+      case Phase::kSeeds:
+        return search_seeds();
+      case Phase::kDoubts:
+        return search_doubts();
+      case Phase::kJumps:
+        return search_jumps();
+      case Phase::kCheck:
+        return check();
+      case Phase::kDone:
+        break;
+    }
+    return true;
+  }
+
+  void keep() const {
+    if (options_.keep) options_.keep([this](std::ostream& out) { write(out); });
+  }
+  // What a state must be of.
+  [[nodiscard]] std::vector<double> identity() const {
+    std::vector<double> numbers = own_.from;
+    numbers.insert(numbers.end(), own_grid_.to.begin(), own_grid_.to.end());
+    for (const FieldGrid::Axis& axis : own_grid_.axes) {
+      numbers.push_back(axis.coordinate);
+      numbers.push_back(axis.period);
+      numbers.insert(numbers.end(), axis.values.begin(), axis.values.end());
+    }
+    numbers.push_back(own_.time);
+    numbers.push_back(static_cast<double>(options_.search.seed));
+    return numbers;
+  }
+  void write(std::ostream& out) const {
+    ByteWriter bytes(out);
+    bytes.add(identity());
+    bytes.add(course_);
+    bytes.add(labels_);
+    sweep_.write(bytes);
+    searches_.write(bytes);
+    bytes.finish();
+  }
+  void read(std::istream& in) {
+    ByteReader bytes(in);
+    const std::vector<double> own = identity();
+    if (bytes.take_all<double>(own.size()) != own) {
+      throw DamagedState("the state is that of another field");
+    }
+    course_ = bytes.take<Course>();
+    labels_ = bytes.take_all<Label>(static_cast<std::size_t>(course_.searches + grid_.size()));
+    sweep_.read(bytes);
+    searches_.read(bytes);
+    bytes.finish();
+  }
+
   // Those of the farthest corner, where the scene is regular there.
   [[nodiscard]] NaturalScales scales_of() const {
     BoundaryValueProblem farthest = own_;
@@ -196,16 +287,17 @@ class FieldSolver {
       return go_on();
     };
     const int threads = thread_count(options_.threads);
-    (void)sweep_.reflect(threads);
+    if (!sweep_.is_spreading()) (void)sweep_.reflect(threads);
     do {
-      const Spread spread = sweep_.spread(threads, progress);
-      settled_ = spread == Spread::kSettled;
+      const Spread spread = sweep_.spread(threads, progress, [this] { keep(); });
+      course_.settled = spread == Spread::kSettled;
       if (spread == Spread::kStopped || stopped_) return false;
-    } while (settled_ && sweep_.reflect(threads) > 0);
+    } while (course_.settled && sweep_.reflect(threads) > 0);
+    course_.spreading = false;
     return true;
   }
 
-  bool spread_from_seeds() {
+  bool search_seeds() {
     constexpr long kPointsPerSeed = 2000;
     constexpr long kFewest = 8;
     constexpr long kMost = 64;
@@ -213,21 +305,22 @@ class FieldSolver {
     const std::vector<long> seeds = evenly_spread_points(
         grid_, std::min(size, std::clamp(size / kPointsPerSeed, kFewest, kMost)));
     if (!improve(seeds)) return false;
-    return spread();
+    course_.phase = Phase::kDoubts;
+    return true;
   }
 
   // What came of searches of points.
   struct Searched {
     std::size_t known = 0;  // before
     std::size_t less = 0;   // of these had less
-    bool better = false;    // there is news for neighbours
   };
-  // Searches points, each of them once; nothing where that was stopped.
+  // Searches points, each of them once, and asks for a spread where that gave news; nothing where
+  // it was stopped.
   std::optional<Searched> improve(const std::vector<long>& points) {
     constexpr double kLess = 1e-6;  // relative; the model of a neighbour is not better than that
     const auto found = search(points, options_.search.seed);
-    count_ += static_cast<long>(points.size());
     if (stopped_) return std::nullopt;
+    course_.searches += static_cast<long>(points.size());
     Searched searched;
     for (const auto& [i, report] : found) {
       const double action = action_of(i);
@@ -237,7 +330,7 @@ class FieldSolver {
           !report.geodesics.empty() && report.geodesics[0].action < (1 - kLess) * action;
       searched.less += has_less ? 1 : 0;
     }
-    searched.better = take(found);
+    course_.spreading = take(found);
     return searched;
   }
 
@@ -245,79 +338,79 @@ class FieldSolver {
   // gives, until hardly any of a sample has less; and all that nothing is known of. Of 46,656
   // vehicles 2,500 are doubted, and of each sample of 130 one or two had less: to search on cost
   // 64 s more than all the rest, which took 37 s, and changed 10 points.
-  bool settle_doubts() {
+  bool search_doubts() {
     constexpr std::size_t kLeast = 32;
     constexpr std::size_t kShare = 16;  // of them at once: neighbours profit from each other
     constexpr std::size_t kMost = 512;
     constexpr std::size_t kWorth = 32;  // of so many one has less, or they are not searched on
-    bool in_vain = false;
-    for (;;) {
-      std::vector<long> doubtful;
-      for (const long i : sweep_.doubtful()) {
-        const bool known = sweep_.points().known(i);
-        if (!searches_.tried(i) && !(in_vain && known) && !searches_.rests(i))
-          doubtful.push_back(i);
-      }
-      if (doubtful.empty()) return true;
-      std::vector<long> some;
-      const std::size_t at_once = std::clamp(doubtful.size() / kShare, kLeast, kMost);
-      const std::size_t stride = (doubtful.size() + at_once - 1) / at_once;
-      for (std::size_t k = 0; k < doubtful.size(); k += stride) some.push_back(doubtful[k]);
-      const auto searched = improve(some);
-      if (!searched) return false;
-      if (searched->known > 0) in_vain = searched->less * kWorth < searched->known;
-      if (searched->better && !spread()) return false;
+    std::vector<long> doubtful;
+    for (const long i : sweep_.doubtful()) {
+      const bool known = sweep_.points().known(i);
+      const bool wanted = !(course_.in_vain && known);
+      if (wanted && !searches_.tried(i) && !searches_.rests(i)) doubtful.push_back(i);
     }
+    if (doubtful.empty()) {
+      course_.phase = Phase::kJumps;
+      course_.at_once = kFewestJumps;
+      return true;
+    }
+    std::vector<long> some;
+    const std::size_t at_once = std::clamp(doubtful.size() / kShare, kLeast, kMost);
+    const std::size_t stride = (doubtful.size() + at_once - 1) / at_once;
+    for (std::size_t k = 0; k < doubtful.size(); k += stride) some.push_back(doubtful[k]);
+    const auto searched = improve(some);
+    if (!searched) return false;
+    if (searched->known > 0) course_.in_vain = searched->less * kWorth < searched->known;
+    return true;
   }
 
   // Searches points that are much farther than a neighbour, the farthest first, and as long as
   // enough of them had less. Of 393 among 46,656 vehicles the first 48 all had less, up to 600
   // times less, then 16 of 64 and 14 of 128; none were wrong among 38 unicycles and 88 points of
   // the Heisenberg group, where 16 searches are made in vain.
-  bool settle_jumps() {
-    constexpr std::size_t kFewest = 16;
+  bool search_jumps() {
     constexpr std::size_t kMost = 512;
     constexpr std::size_t kWorth = 8;
-    for (std::size_t at_once = kFewest;;) {
-      std::vector<double> distances(grid_.size());
-      for (long i = 0; i < grid_.size(); ++i) {
-        distances[i] = std::sqrt(2 * action_of(i) * own_.time);
-      }
-      std::vector<long> far = points_beyond_jumps(own_grid_, distances);
-      std::erase_if(far, [this](long i) { return searches_.tried(i) || searches_.rests(i); });
-      if (far.empty()) return true;
-      far.resize(std::min(far.size(), at_once));
-      const auto searched = improve(far);
-      if (!searched || (searched->better && !spread())) return false;
-      if (searched->less * kWorth < far.size()) return true;
-      at_once = std::clamp(2 * searched->less, kFewest, kMost);
-    }
+    std::vector<double> distances(grid_.size());
+    for (long i = 0; i < grid_.size(); ++i) distances[i] = std::sqrt(2 * action_of(i) * own_.time);
+    std::vector<long> far = points_beyond_jumps(own_grid_, distances);
+    std::erase_if(far, [this](long i) { return searches_.tried(i) || searches_.rests(i); });
+    far.resize(std::min(far.size(), course_.at_once));
+    const auto searched = improve(far);
+    if (!searched) return false;
+    if (far.empty() || searched->less * kWorth < far.size()) course_.phase = Phase::kCheck;
+    course_.at_once = std::clamp(2 * searched->less, kFewestJumps, kMost);
+    return true;
   }
-
-  bool settle() { return settle_doubts() && settle_jumps(); }
 
   // A random sample, searched with another seed, and the triangles between it and neighbours. What
   // is lower is spread, and another sample drawn.
-  bool check(Field& field) {
+  bool check() {
     constexpr int kRounds = 4;
     const long count = std::min(options_.check, grid_.size());
     std::seed_seq sequence{options_.search.seed, options_.search.seed >> 32U, std::uint64_t{1}};
     std::mt19937_64 random(sequence);
-    for (int round = 0; round < kRounds && count > 0; ++round) {
-      std::set<long> sample;
+    std::set<long> sample;
+    for (int round = 0; round <= course_.round && count > 0; ++round) {
+      sample.clear();
       while (static_cast<long>(sample.size()) < count) {
         sample.insert(static_cast<long>(random() % static_cast<std::uint64_t>(grid_.size())));
       }
-      const std::uint64_t seed = options_.search.seed + 1 + static_cast<std::uint64_t>(round);
-      auto found = check({sample.begin(), sample.end()}, seed, field);
-      if (stopped_) return false;
-      if (field.lower + field.violations == 0 || round + 1 == kRounds) return true;
-      if (take(found) && !(spread() && settle())) return false;
+    }
+    const std::uint64_t seed = options_.search.seed + 1 + static_cast<std::uint64_t>(course_.round);
+    const auto found = check({sample.begin(), sample.end()}, seed);
+    if (stopped_) return false;
+    if (course_.lower + course_.violations == 0 || ++course_.round == kRounds) {
+      course_.phase = Phase::kDone;
+    } else if (take(found)) {
+      course_.spreading = true;
+      course_.in_vain = false;
+      course_.phase = Phase::kDoubts;
     }
     return true;
   }
   // What searches gave to these points, and to those that violate a triangle.
-  FieldSearches::Reports check(const std::vector<long>& sample, std::uint64_t seed, Field& field) {
+  FieldSearches::Reports check(const std::vector<long>& sample, std::uint64_t seed) {
     constexpr double kLower = 1e-8;
     auto found = search(sample, seed);
     const Triangles triangles = check_triangles(
@@ -328,15 +421,15 @@ class FieldSolver {
         searching(seed),
         seed,
         options_.threads);
-    field.triangles = triangles.tried;
-    field.violations = static_cast<long>(triangles.beyond.size());
-    field.checked = static_cast<long>(sample.size());
-    field.lower = 0;
+    if (stopped_) return found;
+    course_.triangles = triangles.tried;
+    course_.violations = static_cast<long>(triangles.beyond.size());
+    course_.checked = static_cast<long>(sample.size());
+    course_.lower = 0;
     for (const auto& [i, report] : found) {
       if (report.geodesics.empty()) continue;
-      if (report.geodesics[0].action < (1 - kLower) * verified_action_of(i)) ++field.lower;
+      if (report.geodesics[0].action < (1 - kLower) * verified_action_of(i)) ++course_.lower;
     }
-    field.bound = upper_share(field.lower, field.checked);
     found.merge(search(triangles.beyond, seed));
     return found;
   }
@@ -346,7 +439,7 @@ class FieldSolver {
     if (searches_.rests(i)) return 0;
     double action = std::numeric_limits<double>::infinity();
     if (sweep_.points().known(i)) action = sweep_.points().action(i) * scales_.action;
-    const Geodesic* found = searches_.geodesic(i);
+    const FieldFind* found = searches_.find(i);
     return found == nullptr ? action : std::min(action, found->action);
   }
 
@@ -396,7 +489,7 @@ class FieldSolver {
       if (!(field.error[i] <= allowed) && !settled) poor.push_back(i);
     }
     searches_.keep(search(poor, options_.search.seed));
-    count_ += static_cast<long>(poor.size());
+    course_.searches += static_cast<long>(poor.size());
     for (long i = 0; i < size; ++i) answer(i, allowed, field);
   }
 
@@ -407,19 +500,17 @@ class FieldSolver {
     if (searches_.rests(i)) {
       field.action[i] = field.error[i] = 0;
       std::fill_n(field.p0.begin() + i * n, n, 0.0);
-      field.label[i] = Label::kUnknown;
+      field.label[i] = Label::kLocallyMinimal;  // nothing is less
       return;
     }
     const bool good = field.error[i] <= allowed;
-    const Geodesic* found = searches_.geodesic(i);
+    const FieldFind* found = searches_.find(i);
     if (found != nullptr && (!good || found->action < (1 - kLower) * field.action[i])) {
-      const Geodesic& geodesic = *found;
-      field.action[i] = geodesic.action;
-      std::copy(geodesic.p0.begin(), geodesic.p0.end(), field.p0.begin() + i * n);
-      field.verification[i] = geodesic.verification;
-      field.error[i] = geodesic.verification == Verification::kKnots ? geodesic.knot_defect
-                                                                     : geodesic.endpoint_error;
-      field.label[i] = geodesic.label;
+      field.action[i] = found->action;
+      std::copy(found->p0.begin(), found->p0.end(), field.p0.begin() + i * n);
+      field.verification[i] = found->verification;
+      field.error[i] = found->error;
+      field.label[i] = found->label;
     } else if (!good) {
       const Reason failure = searches_.failure(i);
       field.reason[i] = failure == Reason::kNone ? Reason::kNotVerified : failure;
@@ -439,8 +530,7 @@ class FieldSolver {
   FieldSweep sweep_;
   FieldSearches searches_;
   std::vector<Label> labels_;  // of seeds
-  long count_ = 0;             // of searches, without those of the check
-  bool settled_ = true;
+  Course course_;
   std::atomic<double> known_{0};
   std::atomic<bool> stopped_{false};
 };

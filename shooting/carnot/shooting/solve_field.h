@@ -8,11 +8,21 @@
 
 #include <cstdint>
 #include <functional>
+#include <istream>
+#include <ostream>
+#include <stdexcept>
 #include <vector>
 
 #include "carnot/shooting/find_geodesics.h"
 
 namespace carnot {
+
+// The state that a field is to go on from (FieldOptions::state) is damaged, or that of another
+// field.
+class DamagedState : public std::invalid_argument {
+ public:
+  using std::invalid_argument::invalid_argument;
+};
 
 // Equidistant values of a coordinate of the target. With mod_angles, values around a whole period
 // leave out the repeated end.
@@ -28,6 +38,12 @@ struct FieldOptions {
   // searched for the triangle inequality.
   long check = 100;
   Progress progress;  // fraction of points known; returns false to stop
+  // To go on after an end that was not foreseen: called between sweeps and searches with a function
+  // that writes the state of the work, some 300 bytes a point, for the same machine and version.
+  std::function<void(const std::function<void(std::ostream&)>& write)> keep;
+  // What it has written in a call with the same arguments. The field becomes the same as if that
+  // call had gone on.
+  std::istream* state = nullptr;
 };
 
 // Of all points, the first axis slowest. What is not known of a point is NaN.
@@ -60,12 +76,13 @@ struct Field {
   long checked = 0;     // points searched again,
   long lower = 0;       // and where that found less by more than 1e-8, relative
   double bound = 1;     // of the share of such points, with 95 per cent confidence
+  long resumed = 0;     // points that the state of an earlier call knew
   double elapsed_seconds = 0;
 };
 
 // `problem.to` gives the coordinates without an axis. For scenes with velocity constraints or
 // driftless controls, and without a potential. Throws std::invalid_argument for other scenes, free
-// ends, limits and axes that are empty or not equidistant. Memory: some
+// ends, limits, and axes that are empty or not equidistant, and DamagedState. Memory: some
 // 200 bytes a point with three coordinates, 300 with four, and the answer.
 Field solve_field(const BoundaryValueProblem& problem,
                   const std::vector<FieldAxis>& axes,

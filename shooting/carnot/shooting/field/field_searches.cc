@@ -33,12 +33,19 @@ void FieldSearches::keep(const Reports& reports) {
       continue;
     }
     const Geodesic& geodesic = report.geodesics[0];
-    const auto [kept, is_new] = found_.try_emplace(i, geodesic);
-    if (!is_new && geodesic.action < kept->second.action) kept->second = geodesic;
+    FieldFind find;
+    find.action = geodesic.action;
+    find.verification = geodesic.verification;
+    find.label = geodesic.label;
+    find.error =
+        find.verification == Verification::kKnots ? geodesic.knot_defect : geodesic.endpoint_error;
+    find.p0 = geodesic.p0;
+    const auto [kept, is_new] = found_.try_emplace(i, find);
+    if (!is_new && find.action < kept->second.action) kept->second = find;
   }
 }
 
-const Geodesic* FieldSearches::geodesic(long i) const {
+const FieldFind* FieldSearches::find(long i) const {
   const auto found = found_.find(i);
   return found == found_.end() ? nullptr : &found->second;
 }
@@ -58,6 +65,39 @@ bool FieldSearches::rests(long i) const {
     if (std::abs(there - start) <= kRounded * largest) there = start;
   }
   return near == problem_.from;
+}
+
+void FieldSearches::write(ByteWriter& out) const {
+  out.add(static_cast<long>(found_.size()));
+  for (const auto& [i, find] : found_) {
+    out.add(i);
+    out.add(find.action);
+    out.add(find.verification);
+    out.add(find.label);
+    out.add(find.error);
+    out.add(find.p0);
+  }
+  out.add(static_cast<long>(failed_.size()));
+  for (const auto& [i, reason] : failed_) {
+    out.add(i);
+    out.add(reason);
+  }
+}
+
+void FieldSearches::read(ByteReader& in) {
+  const std::size_t n = problem_.from.size();
+  for (auto left = in.take<long>(); left > 0; --left) {
+    FieldFind& find = found_[in.take<long>()];
+    find.action = in.take<double>();
+    find.verification = in.take<Verification>();
+    find.label = in.take<Label>();
+    find.error = in.take<double>();
+    find.p0 = in.take_all<double>(n);
+  }
+  for (auto left = in.take<long>(); left > 0; --left) {
+    const auto i = in.take<long>();
+    failed_[i] = in.take<Reason>();
+  }
 }
 
 }  // namespace carnot::internal

@@ -5,10 +5,20 @@
 #include <map>
 #include <vector>
 
+#include "carnot/shooting/field/field_bytes.h"
 #include "carnot/shooting/field/field_grid.h"
 #include "carnot/shooting/find_geodesics.h"
 
 namespace carnot::internal {
+
+// An extremal that a search found.
+struct FieldFind {
+  double action = 0;
+  Verification verification = Verification::kSingle;
+  Label label = Label::kUnknown;
+  double error = 0;  // at the end, or of the knots
+  std::vector<double> p0;
+};
 
 class FieldSearches {
  public:
@@ -27,17 +37,21 @@ class FieldSearches {
 
   [[nodiscard]] bool tried(long i) const { return found_.contains(i) || failed_.contains(i); }
   // What was found of point i, or nullptr.
-  [[nodiscard]] const Geodesic* geodesic(long i) const;
+  [[nodiscard]] const FieldFind* find(long i) const;
   // Why nothing was found where it was tried.
   [[nodiscard]] Reason failure(long i) const;
   // Whether point i is the start, but for the round-off of equidistant values: the middle one of
   // seven between -1.2 and 1.2 is 2.2e-16.
   [[nodiscard]] bool rests(long i) const;
 
+  void write(ByteWriter& out) const;
+  // What these have written of the same grid. Throws DamagedBytes.
+  void read(ByteReader& in);
+
  private:
   const BoundaryValueProblem& problem_;
   const FieldGrid& grid_;
-  std::map<long, Geodesic> found_;
+  std::map<long, FieldFind> found_;
   std::map<long, Reason> failed_;
 };
 

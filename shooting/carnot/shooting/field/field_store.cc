@@ -1,6 +1,7 @@
 #include "carnot/shooting/field/field_store.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace carnot::internal {
 namespace {
@@ -72,6 +73,23 @@ void FieldStore::replace(long i, const FieldPoint& point) {
       point.windings.begin(), point.windings.end(), &windings_[i * axes_], [](int turns) {
         return static_cast<std::int16_t>(turns);
       });
+}
+
+void FieldStore::write(ByteWriter& out) const {
+  out.add(states_);
+  out.add(numbers_);
+  out.add(windings_);
+}
+
+void FieldStore::read(ByteReader& in) {
+  const auto take = [&in]<class T>(std::vector<T>& values) {
+    std::vector<T> taken = in.take_all<T>(values.size());
+    if (taken.size() != values.size()) ByteReader::fail();
+    values = std::move(taken);
+  };
+  take(states_);
+  take(numbers_);
+  take(windings_);
 }
 
 bool FieldStore::has_news(long i, int whom) {

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "carnot/shooting/field/field_bytes.h"
 #include "carnot/shooting/linear/dense.h"
 
 namespace carnot::internal {
@@ -54,6 +55,10 @@ class FieldStore {
   // Whether there is news of point i for these neighbours, who are told now: 0 those of its slab,
   // 1 and 2 those across a border, up and down.
   bool has_news(long i, int whom);
+
+  void write(ByteWriter& out) const;
+  // What a store of the same sizes has written. Throws DamagedBytes.
+  void read(ByteReader& in);
 
  private:
   struct State {

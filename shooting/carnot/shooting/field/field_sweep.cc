@@ -76,17 +76,25 @@ void FieldSweep::cross(long layer, FieldCounts& counts) {
   }
 }
 
-Spread FieldSweep::spread(int threads, const Progress& progress, int most_sweeps) {
+Spread FieldSweep::spread(int threads,
+                          const Progress& progress,
+                          const std::function<void()>& between,
+                          int most_sweeps) {
   constexpr long kSlabs = 16;
   const long slabs = std::clamp(layers_ / 2, 1L, kSlabs);
   const auto begin = [&](long slab) { return slab * layers_ / slabs; };
-  int quiet = 0;  // sweeps without an improvement
-  double known = 0;
-  const auto goes_on = [&] { return !progress || progress(known); };
-  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+  const auto known = [this] {
+    long count = 0;
+    for (long i = 0; i < points_.size(); ++i) count += points_.known(i) ? 1 : 0;
+    return static_cast<double>(count) / static_cast<double>(points_.size());
+  };
+  double part = is_spreading() ? known() : 0;
+  const auto goes_on = [&] { return !progress || progress(part); };
+  while (course_.sweeps < most_sweeps) {
+    const bool forward = course_.sweeps % 2 == 0;
     std::vector<FieldCounts> counts(slabs);
     parallel_for(static_cast<int>(slabs), threads, [&](int slab) {
-      sweep_slab(begin(slab), begin(slab + 1), sweep % 2 == 0, goes_on, counts[slab]);
+      sweep_slab(begin(slab), begin(slab + 1), forward, goes_on, counts[slab]);
     });
     if (!goes_on()) return Spread::kStopped;
     // Borders of every second pair of slabs, then the others; around, the last and the first.
@@ -97,19 +105,35 @@ Spread FieldSweep::spread(int threads, const Progress& progress, int most_sweeps
     }
     if (slabs > 1 || layers_ > 2) cross(layers_ - 1, counts[0]);
     long improved = 0;
-    for (const FieldCounts& part : counts) {
-      counts_ += part;
-      improved += part.improved;
+    for (const FieldCounts& counted : counts) {
+      counts_ += counted;
+      improved += counted.improved;
     }
     // Who improved was told to its neighbours in this sweep, or will be in the next one.
-    quiet = improved == 0 ? quiet + 1 : 0;
-    counts_.sweeps = std::max(counts_.sweeps, sweep + 1L);
-    if (quiet == 2) return Spread::kSettled;
-    long count = 0;
-    for (long i = 0; i < points_.size(); ++i) count += points_.known(i) ? 1 : 0;
-    known = static_cast<double>(count) / static_cast<double>(points_.size());
+    course_.quiet = improved == 0 ? course_.quiet + 1 : 0;
+    ++course_.sweeps;
+    counts_.sweeps = std::max<long>(counts_.sweeps, course_.sweeps);
+    if (course_.quiet == 2) {
+      course_ = {};
+      return Spread::kSettled;
+    }
+    part = known();
+    if (between) between();
   }
+  course_ = {};
   return Spread::kTired;
+}
+
+void FieldSweep::write(ByteWriter& out) const {
+  out.add(counts_);
+  out.add(course_);
+  points_.write(out);
+}
+
+void FieldSweep::read(ByteReader& in) {
+  counts_ = in.take<FieldCounts>();
+  course_ = in.take<Course>();
+  points_.read(in);
 }
 
 bool FieldSweep::reflect(long from, const std::vector<double>& mirror, long& flows) {

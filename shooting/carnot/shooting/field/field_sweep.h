@@ -50,8 +50,13 @@ class FieldSweep {
     return seed(i, p0, windings, origin, counts_.flows);
   }
   // Sweeps until nothing changes, at most so often. `progress` is told by all threads, the fraction
-  // that was known after the last sweep.
-  Spread spread(int threads, const Progress& progress, int most_sweeps = kMostSweeps);
+  // that was known after the last sweep. `between` is called between sweeps.
+  Spread spread(int threads,
+                const Progress& progress,
+                const std::function<void()>& between = {},
+                int most_sweeps = kMostSweeps);
+  // Whether the last spread was not ended: the next one goes on with it.
+  [[nodiscard]] bool is_spreading() const { return course_.sweeps > 0; }
   // Gives each point the image of what its mirror images know where that is less; of the mirrors of
   // the scene that keep the start. How many points that improved.
   long reflect(int threads);
@@ -62,7 +67,17 @@ class FieldSweep {
   // at once.
   double verify(long i, const std::vector<double>& units, double allowed);
 
+  // All that is known, between two sweeps or two spreads.
+  void write(ByteWriter& out) const;
+  // What the same sweep has written. Throws DamagedBytes.
+  void read(ByteReader& in);
+
  private:
+  // Of a spread.
+  struct Course {
+    int sweeps = 0;  // so far
+    int quiet = 0;   // of these, the last ones without an improvement
+  };
   bool seed(long i,
             const std::vector<double>& p0,
             const std::vector<int>& windings,
@@ -91,6 +106,7 @@ class FieldSweep {
   long layers_;
   FieldStore points_;
   FieldCounts counts_;
+  Course course_;
 };
 
 }  // namespace carnot::internal

@@ -1,0 +1,107 @@
+// Fields that go on from what an interrupted one has kept.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "carnot/shooting/solve_field.h"
+#include "shooting/problems.h"
+
+namespace carnot::field_state_test {
+namespace {
+
+FieldAxis axis(int coordinate, double first, double step, int count) {
+  FieldAxis axis{coordinate, {}};
+  for (int i = 0; i < count; ++i) axis.values.push_back(first + i * step);
+  return axis;
+}
+
+// Vehicles are promised less in vain, and some are beyond jumps: each part of the work is done.
+Field vehicles(const FieldOptions& options) {
+  return solve_field(
+      test::vehicle({0, 0, 0, 0}, {0, 0, 0, 0}),
+      {axis(0, -0.4, 0.4, 3), axis(1, -0.4, 0.4, 3), axis(2, -1, 0.5, 5), axis(3, -1, 0.5, 5)},
+      options);
+}
+
+FieldOptions quick() {
+  FieldOptions options;
+  options.check = 4;
+  return options;
+}
+
+class FieldState : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    FieldOptions options = quick();
+    options.keep = [this](const auto& write) {
+      std::ostringstream text;
+      write(text);
+      states.push_back(text.str());
+    };
+    whole = vehicles(options);
+    ASSERT_TRUE(whole.finished);
+    ASSERT_GT(states.size(), 8U);
+  }
+  static Field from(const std::string& state) {
+    std::istringstream text(state);
+    FieldOptions options = quick();
+    options.state = &text;
+    return vehicles(options);
+  }
+
+  Field whole;
+  std::vector<std::string> states;
+};
+
+TEST_F(FieldState, LeadsToTheSameField) {
+  for (std::size_t k = 0; k < states.size(); k += states.size() / 5) {
+    const Field field = from(states[k]);
+    EXPECT_GT(field.resumed, 0);
+    EXPECT_EQ(field.action, whole.action);
+    EXPECT_EQ(field.p0, whole.p0);
+    EXPECT_EQ(field.error, whole.error);
+    EXPECT_EQ(field.label, whole.label);
+    EXPECT_EQ(field.searches, whole.searches);
+    EXPECT_EQ(field.pushes, whole.pushes);
+    EXPECT_EQ(field.sweeps, whole.sweeps);
+    EXPECT_EQ(field.checked, whole.checked);
+  }
+}
+
+TEST_F(FieldState, OfAWholeFieldNeedsNoSearches) {
+  std::istringstream text(states.back());
+  FieldOptions options = quick();
+  options.state = &text;
+  int kept = 0;
+  options.keep = [&kept](const auto&) { ++kept; };
+  EXPECT_EQ(vehicles(options).action, whole.action);
+  EXPECT_EQ(kept, 0);
+}
+
+TEST_F(FieldState, IsRefusedWhereItIsDamaged) {
+  const std::string& state = states.back();
+  EXPECT_THROW(from(""), DamagedState);
+  EXPECT_THROW(from(state.substr(0, state.size() / 2)), DamagedState);
+  EXPECT_THROW(from(state.substr(0, state.size() - 1)), DamagedState);
+  for (std::size_t i = 3; i < state.size(); i += state.size() / 40) {
+    std::string flipped = state;
+    flipped[i] = static_cast<char>(flipped[i] ^ 4);
+    EXPECT_THROW(from(flipped), DamagedState) << i;
+  }
+}
+
+TEST_F(FieldState, IsThatOfOneField) {
+  std::istringstream text(states.back());
+  FieldOptions options = quick();
+  options.state = &text;
+  options.search.seed = 1;
+  EXPECT_THROW(vehicles(options), DamagedState);
+}
+
+}  // namespace
+}  // namespace carnot::field_state_test
