@@ -1,0 +1,86 @@
+// What a field says of each point in the end.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "carnot/numerics/parallel.h"
+#include "carnot/shooting/field/field_solver.h"
+
+namespace carnot::internal {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+bool FieldSolver::answer(Field& field) {
+  verify(field);
+  if (stopped_) return false;
+  const long size = grid_.size();
+  std::vector<long> poor;
+  for (long i = 0; i < size; ++i) {
+    const bool settled = searches_.tried(i) || searches_.rests(i);
+    if (!(field.error[i] <= allowed_error()) && !settled) poor.push_back(i);
+  }
+  searches_.keep(search(poor, options_.search.seed));
+  if (stopped_) return false;
+  course_.searches += static_cast<long>(poor.size());
+  for (long i = 0; i < size; ++i) settle(i, field);
+  return true;
+}
+
+void FieldSolver::verify(Field& field) {
+  const long size = grid_.size();
+  const int n = scaled_.dynamics.dof;
+  field.dof = n;
+  field.action.assign(size, kNaN);
+  field.p0.assign(size * n, kNaN);
+  field.error.assign(size, kNaN);
+  field.verification.assign(size, Verification::kSingle);
+  field.label.assign(size, Label::kUnknown);
+  field.reason.assign(size, Reason::kNone);
+  const double allowed = allowed_error();
+  const int threads = thread_count(options_.threads);
+  constexpr long kBlock = 256;
+  const long blocks = (size + kBlock - 1) / kBlock;
+  parallel_for(static_cast<int>(blocks), threads, [&](int block) {
+    if (!go_on()) return;
+    for (long i = block * kBlock; i < std::min(size, (block + 1) * kBlock); ++i) {
+      if (!sweep_.points().known(i)) continue;
+      field.error[i] = sweep_.verify(i, scales_.q, allowed);
+      const FieldPoint point = sweep_.points().point(i);
+      field.action[i] = point.action * scales_.action;
+      field.label[i] = labels_[point.origin];
+      for (int j = 0; j < n; ++j) field.p0[i * n + j] = point.p0[j] * scales_.momentum(j);
+    }
+  });
+}
+
+void FieldSolver::settle(long i, Field& field) const {
+  constexpr double kLower = 1e-12;
+  const int n = field.dof;
+  if (searches_.rests(i)) {
+    field.action[i] = field.error[i] = 0;
+    std::fill_n(field.p0.begin() + i * n, n, 0.0);
+    field.label[i] = Label::kLocallyMinimal;  // nothing is less
+    return;
+  }
+  const bool good = field.error[i] <= allowed_error();
+  const FieldFind* found = searches_.find(i);
+  if (found != nullptr && (!good || found->action < (1 - kLower) * field.action[i])) {
+    field.action[i] = found->action;
+    std::copy(found->p0.begin(), found->p0.end(), field.p0.begin() + i * n);
+    field.verification[i] = found->verification;
+    field.error[i] = found->error;
+    field.label[i] = found->label;
+  } else if (!good) {
+    const Reason failure = searches_.failure(i);
+    field.reason[i] = failure == Reason::kNone ? Reason::kNotVerified : failure;
+    field.action[i] = kNaN;
+    field.error[i] = kNaN;
+    std::fill_n(field.p0.begin() + i * n, n, kNaN);
+    field.label[i] = Label::kUnknown;
+  }
+}
+
+}  // namespace carnot::internal
