@@ -95,6 +95,16 @@ struct Ops<double> {
   static double largest(double x) { return x; }
 };
 
+}  // namespace pack_lane
+
+// How many of W lanes fill one register, two where there are none. What calculates with more
+// numbers than there are registers may take the lanes of a wide pack so many at a time.
+template <int W>
+inline constexpr int kRegisterLanes =
+    std::max(2, pack_lane::Ops<typename pack_lane::Widest<W>::type>::kSize);
+
+namespace pack_lane {
+
 template <class Lane>
 struct SinCos {
   Lane sin;
