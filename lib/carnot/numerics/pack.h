@@ -97,11 +97,11 @@ struct Ops<double> {
 
 }  // namespace pack_lane
 
-// How many of W lanes fill one register, two where there are none. What calculates with more
-// numbers than there are registers may take the lanes of a wide pack so many at a time.
-template <int W>
-inline constexpr int kRegisterLanes =
-    std::max(2, pack_lane::Ops<typename pack_lane::Widest<W>::type>::kSize);
+// How many of W lanes fill one register, two where there are none; W where that does not divide
+// it. What calculates with more numbers than there are registers may take the lanes of a wide pack
+// so many at a time.
+template <int W, class Lane = typename pack_lane::Widest<W>::type>
+inline constexpr int kRegisterLanes = W % 2 == 0 ? std::max(2, pack_lane::Ops<Lane>::kSize) : W;
 
 namespace pack_lane {
 

@@ -7,6 +7,7 @@
 #include "carnot/numerics/linear_algebra.h"
 #include "carnot/numerics/pack.h"
 #include "carnot/system/index_one_system.h"
+#include "carnot/system/packed_rate.h"
 #include "carnot/system/stage_iteration.h"
 #include "carnot/system/system_functions.h"
 
@@ -60,9 +61,9 @@ double scale_of_stages(const StageData& data) {
 // where a rate fails. Never inlined into the loop of the iteration: the compiler would move all
 // constants of the rate out of it, of which there are more than registers, and take a third longer.
 template <int s, class System>
-[[gnu::flatten, gnu::noinline]] double sweep_stages(const System& system,
-                                                    const StageData& data,
-                                                    double* change) {
+[[gnu::flatten, gnu::noinline]] double sweep_in_register(const System& system,
+                                                         const StageData& data,
+                                                         double* change) {
   constexpr int n = System::kDof;
   using P = Pack<s>;
   Vector<P, n> q;
@@ -83,8 +84,34 @@ template <int s, class System>
   return moved;
 }
 
-// The whole iteration with rates(z_dot), the rates at the stages in rows of s, which says whether
-// they exist: for systems whose rates do not run on packs here.
+// The same with rates(z_dot), the rates at the stages in rows of s, which says whether they exist.
+template <int size, int s, class Rates>
+double sweep_with(const Rates& rates, const StageData& data, double* change) {
+  const double moved = move_stages<size, s>(data, change, [](int, const auto&) {});
+  alignas(64) std::array<double, size * s> z_dot;
+  if (!rates(z_dot.data())) return std::numeric_limits<double>::quiet_NaN();
+  const Pack<s> weight = Pack<s>::load(data.weights);
+  for (int k = 0; k < size; ++k) {
+    (weight * Pack<s>::load(z_dot.data() + k * s)).store(data.increments + k * s);
+  }
+  return moved;
+}
+
+// The same; where the stages fill several registers, their rates are taken one after the other: a
+// step of gauss16 takes seven tenths of the time with SSE2, and eight tenths with AVX2.
+template <int s, class System>
+double sweep_stages(const System& system, const StageData& data, double* change) {
+  if constexpr (kRegisterLanes<s> == s) {
+    return sweep_in_register<s>(system, data, change);
+  } else {
+    const auto rates = [&](double* z_dot) {
+      return packed_rate<s>(system, data.time, data.stages, data.algebraic, z_dot);
+    };
+    return sweep_with<2 * System::kDof, s>(rates, data, change);
+  }
+}
+
+// The whole iteration with rates(z_dot): for systems whose rates do not run on packs here.
 template <int size, int s, class Rates>
 StageReport iterate_with(const Rates& rates,
                          const StageData& data,
@@ -92,14 +119,7 @@ StageReport iterate_with(const Rates& rates,
   StageReport report;
   const auto sweep = [&](double* change) {
     ++report.sweeps;
-    const double moved = move_stages<size, s>(data, change, [](int, const auto&) {});
-    alignas(64) std::array<double, size * s> z_dot;
-    if (!rates(z_dot.data())) return std::numeric_limits<double>::quiet_NaN();
-    const Pack<s> weight = Pack<s>::load(data.weights);
-    for (int k = 0; k < size; ++k) {
-      (weight * Pack<s>::load(z_dot.data() + k * s)).store(data.increments + k * s);
-    }
-    return moved;
+    return sweep_with<size, s>(rates, data, change);
   };
   report.end =
       iterate_stages<double, size>(limits, sweep, [&] { return scale_of_stages<size, s>(data); });

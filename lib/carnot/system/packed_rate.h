@@ -14,31 +14,43 @@ namespace carnot {
 template <class System>
 concept PacksRates = System::kPacks;
 
-// z_dot and y at z and the times t, all in rows of W numbers, one per lane: t one row, z and z_dot
-// 2n of them, y m. False when some lane fails: ask rate() one by one which and why. Everything it
+// The part of packed_rate() that fills one register: S lanes of rows of W numbers. Everything it
 // calls is inlined, or registers would go through memory.
-template <int W, class System, class Lane = typename pack_lane::Widest<W>::type>
-[[gnu::flatten, gnu::noinline]] bool packed_rate(
+template <int S, int W, class Lane, class System>
+[[gnu::flatten, gnu::noinline]] bool rate_in_register(
     const System& system, const double* t, const double* z, double* y, double* z_dot) {
+  constexpr int n = System::kDof;
+  using P = Pack<S, Lane>;
+  Vector<P, n> q;
+  Vector<P, n> p;
+  for (int i = 0; i < n; ++i) {
+    q[i] = P::load(z + i * W);
+    p[i] = P::load(z + (n + i) * W);
+  }
+  Vector<P, System::kAlgebraic> algebraic;
+  Rate<P, n> rate;
+  if (system.rate(P::load(t), q, p, algebraic, rate) != RateStatus::kOk) return false;
+  for (int i = 0; i < n; ++i) {
+    rate.q_dot[i].store(z_dot + i * W);
+    rate.p_dot[i].store(z_dot + (n + i) * W);
+  }
+  for (int i = 0; i < System::kAlgebraic; ++i) algebraic[i].store(y + i * W);
+  return true;
+}
+
+// z_dot and y at z and the times t, all in rows of W numbers, one per lane: t one row, z and z_dot
+// 2n of them, y m. False when some lane fails: ask rate() one by one which and why. A register at a
+// time: with SSE2 a rate of the vehicle takes 55 ns with all of eight lanes at once and 18 ns so,
+// with AVX2 15 ns and 8 ns (Zen 5).
+template <int W, class System, class Lane = typename pack_lane::Widest<W>::type>
+bool packed_rate(const System& system, const double* t, const double* z, double* y, double* z_dot) {
   if constexpr (IsErased<System>) {
     return system.template packed_rate<W>(t, z, y, z_dot);
   } else {
-    constexpr int n = System::kDof;
-    using P = Pack<W, Lane>;
-    Vector<P, n> q;
-    Vector<P, n> p;
-    for (int i = 0; i < n; ++i) {
-      q[i] = P::load(z + i * W);
-      p[i] = P::load(z + (n + i) * W);
+    constexpr int S = kRegisterLanes<W, Lane>;
+    for (int l = 0; l < W; l += S) {
+      if (!rate_in_register<S, W, Lane>(system, t + l, z + l, y + l, z_dot + l)) return false;
     }
-    Vector<P, System::kAlgebraic> algebraic;
-    Rate<P, n> rate;
-    if (system.rate(P::load(t), q, p, algebraic, rate) != RateStatus::kOk) return false;
-    for (int i = 0; i < n; ++i) {
-      rate.q_dot[i].store(z_dot + i * W);
-      rate.p_dot[i].store(z_dot + (n + i) * W);
-    }
-    for (int i = 0; i < System::kAlgebraic; ++i) algebraic[i].store(y + i * W);
     return true;
   }
 }
