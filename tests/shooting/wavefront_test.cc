@@ -20,6 +20,7 @@ namespace {
 
 using std::numbers::pi;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 // Without a refinement: the first mesh is enough for what is tested.
 FrontOptions coarse(FrontKind what, double length) {
@@ -335,6 +336,14 @@ TEST(Wavefront, IsRefinedUntilEdgesAreShort) {
   EXPECT_THAT(mesh.message, HasSubstr("left out"));
   options.most = 1600;
   EXPECT_THAT(wavefront(heisenberg(), {0, 0, 0}, options).message, HasSubstr("more vertices"));
+}
+
+// At y = 0 the line along x is an abnormal minimiser.
+TEST(Wavefront, SaysWhereAbnormalCurvesStart) {
+  const Dynamics martinet = test::martinet({0, 0, 0}).dynamics;
+  const FrontOptions options = coarse(FrontKind::kFront, 0.5);
+  EXPECT_THAT(wavefront(martinet, {0, 0, 0}, options).message, HasSubstr("abnormal curves"));
+  EXPECT_THAT(wavefront(martinet, {0, 0.5, 0}, options).message, Not(HasSubstr("abnormal")));
 }
 
 TEST(Wavefront, IsTheSameForAnyNumberOfThreads) {

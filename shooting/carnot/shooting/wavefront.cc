@@ -12,6 +12,7 @@
 
 #include "carnot/numerics/parallel.h"
 #include "carnot/shooting/cut_time.h"
+#include "carnot/shooting/extremal/abnormal_curve.h"
 #include "carnot/shooting/front/caustic_lines.h"
 #include "carnot/shooting/front/cut_values.h"
 #include "carnot/shooting/front/enclosed.h"
@@ -441,9 +442,15 @@ class FrontMaker {
       if (!at_length() && options_.bound == 0)
         text << ", where times are below " << options_.length / 8;
     }
+    const auto add = [&text]() -> std::ostream& {
+      return text << (text.str().empty() ? "" : "; ");
+    };
+    if (may_have_abnormal_curves(BoundaryValueProblem(dynamics_, from_, from_, 1))) {
+      add() << "abnormal curves start here: beside their ends momenta grow beyond all bounds, and "
+            << "what these lead to is left out";
+    }
     if (rough_ > 0) {
-      if (!text.str().empty()) text << "; ";
-      text << rough_ << " edges are longer or sharper than asked for: more vertices were needed";
+      add() << rough_ << " edges are longer or sharper than asked for: more vertices were needed";
     }
     return text.str();
   }
