@@ -29,7 +29,7 @@ struct ConjugatePoint {
 };
 
 // The one of this order, counted with multiplicity; order 1 is the first. Cost: on the unicycle
-// some 15 steps with their tangents, of which 7 are those of the last steps' zero.
+// some 13 steps with their tangents, of which 5 find the zero in the last one.
 ConjugatePoint conjugate_point(const Ray& ray, double horizon, int order = 1);
 double conjugate_time(const Ray& ray, double horizon, int order = 1);
 
