@@ -8,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include "atlas/atlas_call.h"
 #include "atlas/atlas_output.h"
 #include "atlas/atlas_plot.h"
 #include "atlas/atlas_record.h"
@@ -19,7 +20,6 @@
 #include "atlas/models.h"
 #include "atlas/problem_list.h"
 #include "carnot/shooting/distance_field.h"
-#include "carnot/shooting/solve_field.h"
 #include "carnot/shooting/solve_many.h"
 #include "catalogue/scene_choice.h"
 #include "run/delivery.h"
@@ -28,7 +28,6 @@
 #include "text/numbers.h"
 #include "text/output_file.h"
 #include "text/progress_bar.h"
-#include "text/version.h"
 
 namespace carnot::apps {
 namespace {
@@ -63,52 +62,6 @@ Exit status: 0 all were tried, 1 a file could not be written, 2 bad input or ano
 130 interrupted: --resume goes on.)";
 
 constexpr const char* kDistances = ".field";  // the ending of a DistanceField
-
-struct AtlasCall {
-  RunOptions run;
-  ListOptions list;
-  SearchOptions search;
-  std::string output;
-  std::string trajectories = "0";
-  bool resume = false;
-  bool no_times = false;
-  bool field = false;
-  std::string check = "100";
-};
-
-// Of which a record of the journal consists. Enough for its cost not to count, few enough for a
-// kill not to cost much.
-long chunk_of(long problems) {
-  constexpr long kLargest = 16;
-  constexpr long kChunks = 256;
-  return std::clamp(problems / kChunks, 1L, kLargest);
-}
-
-// With the list as `problems` says.
-Json identity_of(const AtlasCall& call, const Run& run, Json problems) {
-  const SearchOptions& search = call.search;
-  return {{"version", kVersion},
-          {"scene", run.entry->info.name},
-          {"text", run.entry->text},
-          {"parameters", parameters_json(run)},
-          {"method", run.method.name},
-          {"seed", run.seed},
-          {"options",
-           {{"count", search.count},
-            {"all", search.all},
-            {"max_length", search.max_length},
-            {"starts", search.starts},
-            {"tolerance", search.tolerance},
-            {"minimiser", search.minimiser},
-            {"time_limit", search.time_limit},
-            {"mod_angles", search.mod_angles},
-            {"limits", search.asked.limits},
-            {"discs", search.asked.discs},
-            {"trajectories", call.trajectories},
-            {"field", call.field},
-            {"check", call.check}}},
-          {"problems", std::move(problems)}};
-}
 
 class Atlas {
  public:
@@ -169,15 +122,20 @@ class Atlas {
     std::vector<FieldAxis> axes;
     for (const Axis& axis : list_->axes()) axes.push_back({axis.coordinate, axis.values});
     const BoundaryValueProblem asked = problem_between(run_.dynamics, problem(0).ends);
+    FieldOptions options;
+    options.search = options_;
+    options.threads = run_.threads;
+    options.check = parse_integer("--check", call_.check, 0, 1000000);
     const std::string path = call_.output + ".journal";
     const bool goes_on = call_.resume && std::filesystem::exists(path);
-    Journal journal(path, journal_call(), call_.resume);
+    Journal journal(path, journal_call(call_, run_, *list_), call_.resume);
     FieldState state(path);
     if (!goes_on) state.remove();
-    bool damaged = false;
     Field field;
     try {
-      field = solve_field(asked, axes, state, damaged);
+      ProgressBar bar("points", static_cast<double>(list_->size()), run_.destination.quiet);
+      options.progress = bar.callback();
+      field = state.solve(asked, axes, options);
     } catch (...) {
       if (!state.exists()) journal.remove();
       throw;
@@ -205,37 +163,13 @@ class Atlas {
     state.remove();
     journal.remove();
     Result result;
-    result.json = summary_json(summary, field.resumed, journal.repaired() + (damaged ? 1 : 0));
+    result.json = summary_json(summary, field.resumed, journal.repaired() + state.repaired());
     result.json["field"] = field_json(field);
     result.json["elapsed_seconds"] = field.elapsed_seconds;
     result.text = [&] {
       return atlas_text(result.json) + field_text(field) + "written: " + call_.output + '\n';
     };
     return deliver_with_plot(result);
-  }
-
-  // From what an earlier call has left; where that is `damaged`, from the beginning.
-  [[nodiscard]] Field solve_field(const BoundaryValueProblem& asked,
-                                  const std::vector<FieldAxis>& axes,
-                                  FieldState& state,
-                                  bool& damaged) const {
-    FieldOptions options;
-    options.search = options_;
-    options.threads = run_.threads;
-    options.check = parse_integer("--check", call_.check, 0, 1000000);
-    options.keep = [&state](const auto& write) { state.keep(write); };
-    ProgressBar bar("points", static_cast<double>(list_->size()), run_.destination.quiet);
-    options.progress = bar.callback();
-    options.state = state.earlier();
-    if (options.state != nullptr) {
-      try {
-        return carnot::solve_field(asked, axes, options);
-      } catch (const DamagedState&) {
-        damaged = true;
-        options.state = nullptr;
-      }
-    }
-    return carnot::solve_field(asked, axes, options);
   }
 
   int deliver_with_plot(Result& result) const {
@@ -298,28 +232,11 @@ class Atlas {
     return problem;
   }
 
-  // What the journal says of this call. One that was begun with a shorter list keeps its chunks.
-  [[nodiscard]] JournalCall journal_call() const {
-    const auto words = [this](const Json& problems, const Json& chunk) {
-      Json json = identity_of(call_, run_, problems);
-      json["chunk"] = chunk;
-      return json;
-    };
-    const auto chunk_in = [](const Json& there) { return there.value("chunk", Json(nullptr)); };
-    JournalCall call;
-    call.words = words(list_->identity(), chunk_of(list_->size()));
-    call.then = [=, this](const Json& there) {
-      return words(list_->identity_then(there.value("problems", Json::object())), chunk_in(there));
-    };
-    call.now = [=, this](const Json& there) { return words(list_->identity(), chunk_in(there)); };
-    return call;
-  }
-
   // Throws where there is none; the other ranks are told, and what a chunk is.
   std::unique_ptr<Journal> open_journal(Ranks& ranks) const {
     try {
-      auto journal =
-          std::make_unique<Journal>(call_.output + ".journal", journal_call(), call_.resume);
+      auto journal = std::make_unique<Journal>(
+          call_.output + ".journal", journal_call(call_, run_, *list_), call_.resume);
       (void)ranks.agree(journal->words().at("chunk").get<long>());
       return journal;
     } catch (...) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
 #include <system_error>
 
@@ -19,9 +20,21 @@ constexpr std::chrono::milliseconds kShortest{500};
 FieldState::FieldState(const std::string& path)
     : path_(path + ".state"), temporary_(path_ + ".part"), pause_(kShortest) {}
 
-std::istream* FieldState::earlier() {
-  earlier_.open(path_, std::ios::binary);
-  return earlier_.is_open() ? &earlier_ : nullptr;
+Field FieldState::solve(const BoundaryValueProblem& problem,
+                        const std::vector<FieldAxis>& axes,
+                        FieldOptions options) {
+  options.keep = [this](const auto& write) { keep(write); };
+  std::ifstream earlier(path_, std::ios::binary);
+  if (earlier.is_open()) {
+    options.state = &earlier;
+    try {
+      return solve_field(problem, axes, options);
+    } catch (const DamagedState&) {
+      ++repaired_;
+      options.state = nullptr;
+    }
+  }
+  return solve_field(problem, axes, options);
 }
 
 void FieldState::keep(const std::function<void(std::ostream&)>& write) {
