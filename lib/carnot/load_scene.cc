@@ -12,6 +12,7 @@
 #include "carnot/language/examine_text.h"
 #include "carnot/language/text_system.h"
 #include "carnot/tableau/methods.h"
+#include "carnot/tableau/own_method.h"
 
 namespace carnot {
 
@@ -143,24 +144,34 @@ TextScene load_scene(const std::string& path) {
   return scene_from_text(text, name, path);
 }
 
+namespace {
+
+// `coefficients` are the method again, or its tableau.
+template <class Coefficients>
+Dynamics with_kernel(Dynamics dynamics, const Method& method, const Coefficients& coefficients) {
+  dynamics.method = method.name;
+  dynamics.order = method.order;
+  dynamics.symplectic = method.symplectic;
+  std::vector<double> periods;
+  for (const Coordinate& c : dynamics.info.configuration) periods.push_back(c.period);
+  dynamics.kernel = make_kernel(coefficients, periods, *dynamics.functions);
+  return dynamics;
+}
+
+}  // namespace
+
 Dynamics make_dynamics(const TextScene& scene, std::string_view name) {
-  const Method* const method = find_method(name);
-  if (method == nullptr) {
-    throw std::invalid_argument("method " + std::string(name) + ": there is none of that name");
-  }
-  if (scene.holonomic() > 0 && method->family == kRattleFamily) {
+  const Method& method = method_of_name(name);
+  if (scene.holonomic() > 0 && method.family == kRattleFamily) {
     throw std::invalid_argument("method " + std::string(name) +
                                 ": holonomic constraints from text are kept as Dh q' = 0, by the "
                                 "other methods");
   }
-  Dynamics dynamics = scene.impl_->bind();
-  dynamics.method = method->name;
-  dynamics.order = method->order;
-  dynamics.symplectic = method->symplectic;
-  std::vector<double> periods;
-  for (const Coordinate& c : dynamics.info.configuration) periods.push_back(c.period);
-  dynamics.kernel = make_kernel(*method, periods, *dynamics.functions);
-  return dynamics;
+  return with_kernel(scene.impl_->bind(), method, method);
+}
+
+Dynamics make_dynamics(const TextScene& scene, const OwnMethod& own) {
+  return with_kernel(scene.impl_->bind(), own.method, own.tableau);
 }
 
 }  // namespace carnot

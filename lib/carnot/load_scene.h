@@ -18,7 +18,7 @@
 
 namespace carnot {
 
-struct Method;
+struct OwnMethod;
 
 struct TextParameter {
   std::string name;
@@ -51,6 +51,7 @@ class TextScene {
  private:
   friend TextScene scene_from_text(const std::string&, const std::string&, const std::string&);
   friend Dynamics make_dynamics(const TextScene&, std::string_view);
+  friend Dynamics make_dynamics(const TextScene&, const OwnMethod&);
   struct Impl;
   std::shared_ptr<const Impl> impl_;
 };
@@ -67,5 +68,6 @@ TextScene load_scene(const std::string& path);
 
 // As make_dynamics() of make_dynamics.h.
 Dynamics make_dynamics(const TextScene& scene, std::string_view method = "gauss16");
+Dynamics make_dynamics(const TextScene& scene, const OwnMethod& own);
 
 }  // namespace carnot

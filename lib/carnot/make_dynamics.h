@@ -14,6 +14,7 @@
 #include "carnot/system/system_calls.h"
 #include "carnot/system/system_of.h"
 #include "carnot/tableau/methods.h"
+#include "carnot/tableau/own_method.h"
 #include "carnot/transcription/transcription_calls.h"
 
 namespace carnot {
@@ -26,8 +27,7 @@ inline constexpr bool kNeedsRattle = HasHolonomic<Scene> && !IsProduct<Scene>;
 template <class Scene>
 bool suits(const Method& method) {
   if (!HasHolonomic<Scene> || method.family == kRattleFamily) return true;
-  const bool keeps_quadratic = method.family == kGaussFamily || method.family == kComposedFamily;
-  return IsProduct<Scene> && keeps_quadratic;
+  return IsProduct<Scene> && keeps_quadratic_invariants(method);
 }
 
 // gauss16, or rattle where it is needed.
@@ -167,27 +167,34 @@ inline std::vector<double> periods_of(const SceneInfo& info) {
   return periods;
 }
 
+// Throws std::invalid_argument where a parameter of the scene is out of its range, or the method
+// does not suit the scene.
+template <class Scene>
+void check_method(const Scene& scene, const Method& method) {
+  validate(scene);
+  if (suits<Scene>(method)) return;
+  throw std::invalid_argument("method " + method.name +
+                              ": it does not keep the holonomic constraints of this scene");
+}
+
 // A method of methods() that suits the scene. Throws std::invalid_argument.
 template <class Scene>
 const Method& method_for(const Scene& scene, std::string_view name) {
-  validate(scene);
-  const Method* const method = find_method(name);
-  if (method == nullptr || !suits<Scene>(*method)) {
-    throw std::invalid_argument("method " + std::string(name) +
-                                (method == nullptr ? ": there is none of that name"
-                                                   : ": it does not keep the holonomic "
-                                                     "constraints of this scene"));
-  }
-  return *method;
+  const Method& method = method_of_name(name);
+  check_method(scene, method);
+  return method;
 }
 
-// A Dynamics whose method runs in a kernel of the library.
-template <class Scene>
-Dynamics with_compiled_kernel(const Scene& scene, const Method& method) {
+// A Dynamics whose method runs in a kernel of the library. `coefficients` are the method again, or
+// its tableau.
+template <class Scene, class Coefficients>
+Dynamics with_compiled_kernel(const Scene& scene,
+                              const Method& method,
+                              const Coefficients& coefficients) {
   using System = decltype(make_system(scene));
   const SystemFunctions& functions = functions_of<System>();
   Dynamics dynamics = bind(scene, method, SystemOnBranch<System>{make_system(scene)}, functions);
-  dynamics.kernel = make_kernel(method, periods_of(dynamics.info), functions);
+  dynamics.kernel = make_kernel(coefficients, periods_of(dynamics.info), functions);
   return dynamics;
 }
 
@@ -200,6 +207,19 @@ inline constexpr bool kHasCompiledKernel = [] {
   return System::kDof <= kMostCompiled && kFitsKernel<System>;
 }();
 
+namespace dynamics_calls {
+
+template <class Scene>
+constexpr void require_compiled_kernel() {
+  static_assert(!HasHolonomic<Scene>,
+                "holonomic constraints: make_rattle_dynamics() of <carnot/make_rattle_dynamics.h>");
+  static_assert(kHasCompiledKernel<Scene>,
+                "more coordinates than kMostCompiled: make_inlined_dynamics() of "
+                "<carnot/make_inlined_dynamics.h>");
+}
+
+}  // namespace dynamics_calls
+
 // A Dynamics of the scene with a method of methods.h. Throws std::invalid_argument when a parameter
 // of the scene is out of its range, or there is no such method for it.
 //
@@ -209,12 +229,18 @@ inline constexpr bool kHasCompiledKernel = [] {
 template <class Scene>
 Dynamics make_dynamics(const Scene& scene, std::string_view name = default_method<Scene>()) {
   using namespace dynamics_calls;
-  static_assert(!HasHolonomic<Scene>,
-                "holonomic constraints: make_rattle_dynamics() of <carnot/make_rattle_dynamics.h>");
-  static_assert(kHasCompiledKernel<Scene>,
-                "more coordinates than kMostCompiled: make_inlined_dynamics() of "
-                "<carnot/make_inlined_dynamics.h>");
-  return with_compiled_kernel(scene, method_for(scene, name));
+  require_compiled_kernel<Scene>();
+  const Method& method = method_for(scene, name);
+  return with_compiled_kernel(scene, method, method);
+}
+
+// The same with a method of one's own (own_method.h).
+template <class Scene>
+Dynamics make_dynamics(const Scene& scene, const OwnMethod& own) {
+  using namespace dynamics_calls;
+  require_compiled_kernel<Scene>();
+  check_method(scene, own.method);
+  return with_compiled_kernel(scene, own.method, own.tableau);
 }
 
 }  // namespace carnot

@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include "testing/rooted_trees.h"
+#include "carnot/tableau/rooted_trees.h"
 
 namespace carnot::composition_tableau_test {
 namespace {
@@ -31,8 +31,8 @@ INSTANTIATE_TEST_SUITE_P(AllOrders,
 // All trees up to the order, in absolute terms; the next order fails.
 TEST_P(CompositionTableauTest, OrderConditionsOfTreesHold) {
   constexpr double kTolerance = 1e-16;  // b is off by kEps, damped by the small steps it belongs to
-  const test::RootedTrees<double> trees(tableau_, order_ + 1);
-  const test::RootedTrees<long double> wide_trees(wide_, order_ + 1);
+  const RootedTrees<double> trees(tableau_, order_ + 1);
+  const RootedTrees<long double> wide_trees(wide_, order_ + 1);
   EXPECT_EQ(tableau_.order, order_);
   for (int order = 1; order <= order_; ++order) {
     EXPECT_LE(trees.of_order(order).error, kTolerance) << order;
@@ -44,7 +44,7 @@ TEST_P(CompositionTableauTest, OrderConditionsOfTreesHold) {
 // The error at equal work, s^order times the coefficient of h^(order + 1), as the header says.
 TEST(CompositionErrorTest, IsSmallerThanThatOfFewerStages) {
   const auto error_at_equal_work = [](const Tableau<long double>& tableau) {
-    const test::RootedTrees<long double> trees(tableau, tableau.order + 1);
+    const RootedTrees<long double> trees(tableau, tableau.order + 1);
     return trees.error_constant(tableau.order + 1) * std::pow(tableau.stages(), tableau.order);
   };
   const auto own = [&](int order) {

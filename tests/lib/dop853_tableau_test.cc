@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "testing/order_conditions.h"
-#include "testing/rooted_trees.h"
+#include "carnot/tableau/order_conditions.h"
+#include "carnot/tableau/rooted_trees.h"
 
 namespace carnot::dop853_tableau_test {
 namespace {
@@ -27,8 +27,8 @@ class Dop853TableauTest : public ::testing::Test {
 // All 200 rooted trees up to order 8; order 9 fails.
 TEST_F(Dop853TableauTest, OrderConditionsOfTreesHold) {
   constexpr int kRoundings = 4;  // every entry of a term is rounded to half a unit
-  const test::RootedTrees<double> trees(tableau_, 9);
-  const test::RootedTrees<long double> wide_trees(wide_, 9);
+  const RootedTrees<double> trees(tableau_, 9);
+  const RootedTrees<long double> wide_trees(wide_, 9);
   EXPECT_EQ(tableau_.order, 8);
   EXPECT_EQ(trees.order(kRoundings), 8);
   EXPECT_EQ(wide_trees.order(kRoundings), 8);
@@ -36,19 +36,19 @@ TEST_F(Dop853TableauTest, OrderConditionsOfTreesHold) {
 
 TEST_F(Dop853TableauTest, QuadratureHasDegreeOfExactness8) {
   for (int k = 1; k <= 8; ++k) {
-    EXPECT_LE(test::quadrature_defect(wide_, k), k * tolerance_) << "k = " << k;
+    EXPECT_LE(quadrature_defect(wide_, k), k * tolerance_) << "k = " << k;
   }
-  EXPECT_GT(test::quadrature_defect(wide_, 9), 1e-4L);
+  EXPECT_GT(quadrature_defect(wide_, 9), 1e-4L);
 }
 
 // C(1) everywhere: the nodes, known exactly, are the row sums. C(2) from the third stage on, C(3)
 // from the fourth (with a_i2 = 0), and D(1).
 TEST_F(Dop853TableauTest, SimplifyingAssumptionsHold) {
-  EXPECT_LE(test::stage_defect(wide_, 1), tolerance_);
-  EXPECT_LE(test::stage_defect(wide_, 2, test::Part::kPosition, 2), 2 * tolerance_);
-  EXPECT_LE(test::stage_defect(wide_, 3, test::Part::kPosition, 3), 3 * tolerance_);
-  EXPECT_LE(test::transposed_defect(wide_, 1), tolerance_);
-  EXPECT_GT(test::stage_defect(wide_, 2, test::Part::kPosition, 1), 1e-4L);
+  EXPECT_LE(stage_defect(wide_, 1), tolerance_);
+  EXPECT_LE(stage_defect(wide_, 2, Part::kPosition, 2), 2 * tolerance_);
+  EXPECT_LE(stage_defect(wide_, 3, Part::kPosition, 3), 3 * tolerance_);
+  EXPECT_LE(transposed_defect(wide_, 1), tolerance_);
+  EXPECT_GT(stage_defect(wide_, 2, Part::kPosition, 1), 1e-4L);
 }
 
 TEST_F(Dop853TableauTest, IsExplicitWithVanishingWeights) {
@@ -87,10 +87,10 @@ TEST(RootedTreesTest, KnowTheClassicalMethod) {
   classical.c = Vector<double, 4>(0, 0.5, 0.5, 1);
   classical.mu = Matrix<double, 4, 4>{{0, 0, 0, 0}, {3, 0, 0, 0}, {0, 1.5, 0, 0}, {0, 0, 3, 0}};
   set_weights(classical);
-  const test::RootedTrees<double> trees(classical, 9);
+  const RootedTrees<double> trees(classical, 9);
   EXPECT_EQ(trees.order(2), 4);
   // The tree with all leaves at the root: |1 - 5 sum b c^4| = 1/24.
-  EXPECT_NEAR(static_cast<double>(test::quadrature_defect(classical, 5)), 1. / 24, 4 * kEps);
+  EXPECT_NEAR(static_cast<double>(quadrature_defect(classical, 5)), 1. / 24, 4 * kEps);
   const int counts[] = {1, 1, 2, 4, 9, 20, 48, 115, 286};
   for (int order = 1; order <= 9; ++order) {
     EXPECT_EQ(trees.of_order(order).trees, counts[order - 1]) << order;
@@ -105,7 +105,7 @@ TEST(RootedTreesTest, CountSymmetriesInTheErrorConstant) {
   euler.c.setZero(1);
   euler.mu.setZero(1, 1);
   set_weights(euler);
-  const test::RootedTrees<double> trees(euler, 3);
+  const RootedTrees<double> trees(euler, 3);
   EXPECT_EQ(trees.order(1), 1);
   EXPECT_NEAR(trees.error_constant(2), 1. / 2, kEps);
   EXPECT_NEAR(trees.error_constant(3), std::hypot(1. / 6, 1. / 6), kEps);

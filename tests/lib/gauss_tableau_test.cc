@@ -7,8 +7,8 @@
 #include <limits>
 #include <string>
 
-#include "testing/order_conditions.h"
-#include "testing/rooted_trees.h"
+#include "carnot/tableau/order_conditions.h"
+#include "carnot/tableau/rooted_trees.h"
 
 namespace carnot::gauss_tableau_test {
 namespace {
@@ -35,24 +35,24 @@ INSTANTIATE_TEST_SUITE_P(AllStages,
 // B(2s): the quadrature is exact for degree < 2s, and not for degree 2s.
 TEST_P(GaussTableauTest, QuadratureHasDegreeOfExactness2s) {
   for (int k = 1; k <= 2 * s_; ++k) {
-    EXPECT_LE(test::quadrature_defect(wide_, k), k * tolerance_) << "k = " << k;
+    EXPECT_LE(quadrature_defect(wide_, k), k * tolerance_) << "k = " << k;
   }
   if (s_ <= 8) {  // the defect, (s!)^4 / (2s)!^2, is above round-off up to here
-    EXPECT_GT(test::quadrature_defect(wide_, 2 * s_ + 1), 4 * tolerance_);
+    EXPECT_GT(quadrature_defect(wide_, 2 * s_ + 1), 4 * tolerance_);
   }
 }
 
 // C(s): the stages are exact for polynomials of degree < s.
 TEST_P(GaussTableauTest, StagesCollocate) {
   for (int k = 1; k <= s_; ++k) {
-    EXPECT_LE(test::stage_defect(wide_, k), k * tolerance_) << "k = " << k;
+    EXPECT_LE(stage_defect(wide_, k), k * tolerance_) << "k = " << k;
   }
 }
 
 // D(s).
 TEST_P(GaussTableauTest, TransposedStagesCollocate) {
   for (int k = 1; k <= s_; ++k) {
-    EXPECT_LE(test::transposed_defect(wide_, k), k * tolerance_) << "k = " << k;
+    EXPECT_LE(transposed_defect(wide_, k), k * tolerance_) << "k = " << k;
   }
 }
 
@@ -60,7 +60,7 @@ TEST_P(GaussTableauTest, TransposedStagesCollocate) {
 TEST_P(GaussTableauTest, OrderConditionsOfTreesHold) {
   constexpr int kMostOrder = 8;
   constexpr int kRoundings = 4;  // every entry of a term is rounded to half a unit
-  const test::RootedTrees<double> trees(tableau_, kMostOrder);
+  const RootedTrees<double> trees(tableau_, kMostOrder);
   EXPECT_EQ(tableau_.order, 2 * s_);
   EXPECT_EQ(trees.order(kRoundings), std::min(2 * s_, kMostOrder));
 }

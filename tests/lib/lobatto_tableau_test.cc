@@ -7,13 +7,11 @@
 #include <limits>
 #include <string>
 
-#include "testing/order_conditions.h"
-#include "testing/rooted_trees.h"
+#include "carnot/tableau/order_conditions.h"
+#include "carnot/tableau/rooted_trees.h"
 
 namespace carnot::lobatto_tableau_test {
 namespace {
-
-using test::Part;
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr long double kWideEps = std::numeric_limits<long double>::epsilon();
@@ -36,20 +34,20 @@ INSTANTIATE_TEST_SUITE_P(AllStages,
 // B(2s - 2); IIIA: C(s), D(s - 2); IIIB: C(s - 2), D(s). No more.
 TEST_P(LobattoTableauTest, SimplifyingAssumptionsHold) {
   for (int k = 1; k <= 2 * s_ - 2; ++k) {
-    EXPECT_LE(test::quadrature_defect(wide_, k), k * tolerance_) << "B, k = " << k;
+    EXPECT_LE(quadrature_defect(wide_, k), k * tolerance_) << "B, k = " << k;
   }
   for (int k = 1; k <= s_; ++k) {
-    EXPECT_LE(test::stage_defect(wide_, k), k * tolerance_) << "k = " << k;
-    EXPECT_LE(test::transposed_defect(wide_, k, Part::kMomentum), k * tolerance_) << "k = " << k;
+    EXPECT_LE(stage_defect(wide_, k), k * tolerance_) << "k = " << k;
+    EXPECT_LE(transposed_defect(wide_, k, Part::kMomentum), k * tolerance_) << "k = " << k;
   }
   for (int k = 1; k <= s_ - 2; ++k) {
-    EXPECT_LE(test::stage_defect(wide_, k, Part::kMomentum), k * tolerance_) << "k = " << k;
-    EXPECT_LE(test::transposed_defect(wide_, k), k * tolerance_) << "k = " << k;
+    EXPECT_LE(stage_defect(wide_, k, Part::kMomentum), k * tolerance_) << "k = " << k;
+    EXPECT_LE(transposed_defect(wide_, k), k * tolerance_) << "k = " << k;
   }
   if (s_ <= 8) {  // above round-off up to here
-    EXPECT_GT(test::quadrature_defect(wide_, 2 * s_ - 1), 4 * tolerance_);
-    EXPECT_GT(test::stage_defect(wide_, s_ - 1, Part::kMomentum), 4 * tolerance_);
-    EXPECT_GT(test::transposed_defect(wide_, s_ - 1), 4 * tolerance_);
+    EXPECT_GT(quadrature_defect(wide_, 2 * s_ - 1), 4 * tolerance_);
+    EXPECT_GT(stage_defect(wide_, s_ - 1, Part::kMomentum), 4 * tolerance_);
+    EXPECT_GT(transposed_defect(wide_, s_ - 1), 4 * tolerance_);
   }
 }
 
@@ -57,14 +55,14 @@ TEST_P(LobattoTableauTest, SimplifyingAssumptionsHold) {
 TEST_P(LobattoTableauTest, OrderConditionsOfColouredTreesHold) {
   constexpr int kMostOrder = 7;
   constexpr int kRoundings = 4;  // every entry of a term is rounded to half a unit
-  const test::RootedTrees<double> trees(tableau_, kMostOrder);
+  const RootedTrees<double> trees(tableau_, kMostOrder);
   EXPECT_EQ(tableau_.order, 2 * s_ - 2);
   EXPECT_EQ(trees.order(kRoundings), std::min(2 * s_ - 2, kMostOrder));
 }
 
 TEST(ColouredTreesTest, AreCountedWithoutTheColourOfTheRoot) {
   // Half of 2, 4, 14, 52, 214, 916, 4116, 18996, the rooted trees with two colours.
-  const test::RootedTrees<double> trees(lobatto_tableau<double>(5), 8);
+  const RootedTrees<double> trees(lobatto_tableau<double>(5), 8);
   const int counts[] = {1, 2, 7, 26, 107, 458, 2058, 9498};
   for (int order = 1; order <= 8; ++order) {
     EXPECT_EQ(trees.of_order(order).trees, counts[order - 1]) << order;

@@ -13,9 +13,9 @@
 #include <string>
 
 #include "carnot/tableau/make_tableau.h"
+#include "carnot/tableau/order_conditions.h"
+#include "carnot/tableau/rooted_trees.h"
 #include "carnot/tableau/tableau_laws.h"
-#include "testing/order_conditions.h"
-#include "testing/rooted_trees.h"
 
 namespace carnot::methods_test {
 namespace {
@@ -60,7 +60,7 @@ TEST_P(MethodTest, HasTheDeclaredOrder) {
   constexpr int kMostOrder = 8;
   constexpr int kRoundings = 4;  // every entry of a term is rounded to half a unit
   const int most = tableau_.partitioned ? kMostOrder - 1 : kMostOrder;  // many trees
-  const test::RootedTrees<double> trees(tableau_, most);
+  const RootedTrees<double> trees(tableau_, most);
   EXPECT_EQ(trees.order(kRoundings), std::min(method_.order, most));
 }
 
@@ -88,7 +88,7 @@ TEST_P(MethodTest, TurnsWithoutDampingIfGeometric) {
   using Square = Eigen::Matrix<Complex, Eigen::Dynamic, Eigen::Dynamic>;
   if (tableau_.partitioned) return;  // q and p differ: R is a matrix
   const int s = method_.stages;
-  const Square a = test::coefficients(tableau_).cast<double>().cast<Complex>();
+  const Square a = coefficients_of(tableau_).cast<double>().cast<Complex>();
   for (const double y : {0.3, 1.0, 2.5}) {
     const Complex w(0, y);
     const Square stages = (Square::Identity(s, s) - w * a).partialPivLu().solve(Square::Ones(s, 1));

@@ -7,8 +7,8 @@
 #include <limits>
 #include <string>
 
-#include "testing/order_conditions.h"
-#include "testing/rooted_trees.h"
+#include "carnot/tableau/order_conditions.h"
+#include "carnot/tableau/rooted_trees.h"
 
 namespace carnot::radau_tableau_test {
 namespace {
@@ -34,25 +34,25 @@ INSTANTIATE_TEST_SUITE_P(AllStages,
 // B(2s - 1), C(s), D(s - 1), and no more.
 TEST_P(RadauTableauTest, SimplifyingAssumptionsHold) {
   for (int k = 1; k < 2 * s_; ++k) {
-    EXPECT_LE(test::quadrature_defect(wide_, k), k * tolerance_) << "B, k = " << k;
+    EXPECT_LE(quadrature_defect(wide_, k), k * tolerance_) << "B, k = " << k;
   }
   for (int k = 1; k <= s_; ++k) {
-    EXPECT_LE(test::stage_defect(wide_, k), k * tolerance_) << "C, k = " << k;
+    EXPECT_LE(stage_defect(wide_, k), k * tolerance_) << "C, k = " << k;
   }
   for (int k = 1; k < s_; ++k) {
-    EXPECT_LE(test::transposed_defect(wide_, k), k * tolerance_) << "D, k = " << k;
+    EXPECT_LE(transposed_defect(wide_, k), k * tolerance_) << "D, k = " << k;
   }
   if (s_ <= 8) {  // above round-off up to here
-    EXPECT_GT(test::quadrature_defect(wide_, 2 * s_), 4 * tolerance_);
-    EXPECT_GT(test::stage_defect(wide_, s_ + 1), 4 * tolerance_);
-    EXPECT_GT(test::transposed_defect(wide_, s_), 4 * tolerance_);
+    EXPECT_GT(quadrature_defect(wide_, 2 * s_), 4 * tolerance_);
+    EXPECT_GT(stage_defect(wide_, s_ + 1), 4 * tolerance_);
+    EXPECT_GT(transposed_defect(wide_, s_), 4 * tolerance_);
   }
 }
 
 TEST_P(RadauTableauTest, OrderConditionsOfTreesHold) {
   constexpr int kMostOrder = 8;
   constexpr int kRoundings = 4;  // every entry of a term is rounded to half a unit
-  const test::RootedTrees<double> trees(tableau_, kMostOrder);
+  const RootedTrees<double> trees(tableau_, kMostOrder);
   EXPECT_EQ(tableau_.order, 2 * s_ - 1);
   EXPECT_EQ(trees.order(kRoundings), std::min(2 * s_ - 1, kMostOrder));
 }

@@ -4,15 +4,14 @@
 #include <span>
 
 #include "carnot/flow/kernel.h"
-#include "carnot/tableau/make_tableau.h"
+#include "carnot/tableau/tableau.h"
 
 namespace carnot {
 
 // Of any Runge-Kutta method.
 template <class System>
-Kernel make_inlined_kernel(const Method& method, std::span<const double> periods) {
+Kernel make_inlined_kernel(const Tableau<double>& tableau, std::span<const double> periods) {
   using namespace kernel;
-  const Tableau<double> tableau = make_tableau(method);
   const auto winding = winding_of<System::kDof>(periods);
   if (fits_in_rows(tableau)) {
     using M = Direct<RungeKutta<System, kRowStages>>;

@@ -194,12 +194,13 @@ inline bool is_gauss(const Tableau<double>& tableau) {
 }
 
 // Stages of one pack. Methods with as many stages, or fewer, run in a kernel that keeps them side
-// by side: the default method, gauss16, fills it. One stage alone would waste the others.
+// by side: the default method, gauss16, fills it. One stage alone would waste the others. All
+// stages move the step there, so that none may have the weight zero.
 inline constexpr int kRowStages = 8;
 
 inline bool fits_in_rows(const Tableau<double>& tableau) {
   return tableau.coupling == Coupling::kFull && !tableau.partitioned && tableau.stages() > 1 &&
-         tableau.stages() <= kRowStages;
+         tableau.stages() <= kRowStages && tableau.all_weighted();
 }
 
 template <class M>

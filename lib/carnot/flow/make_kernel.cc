@@ -8,7 +8,7 @@
 
 namespace carnot {
 
-Kernel make_kernel(const Method& method,
+Kernel make_kernel(const Tableau<double>& tableau,
                    std::span<const double> periods,
                    const SystemFunctions& functions) {
   constexpr std::array kKernels{make_kernel_1,
@@ -25,7 +25,13 @@ Kernel make_kernel(const Method& method,
                                 make_kernel_12};
   static_assert(kKernels.size() == kMostCompiled);
   assert(1 <= functions.dof && functions.dof <= kMostCompiled);
-  return kKernels[functions.dof - 1](make_tableau(method), periods, functions);
+  return kKernels[functions.dof - 1](tableau, periods, functions);
+}
+
+Kernel make_kernel(const Method& method,
+                   std::span<const double> periods,
+                   const SystemFunctions& functions) {
+  return make_kernel(make_tableau(method), periods, functions);
 }
 
 }  // namespace carnot

@@ -27,13 +27,15 @@ struct StagePairs {
   Basis to_even;  // and back
   Basis to_odd;
 
-  // Finds the singular vectors. False where the method is not symplectic and symmetric.
+  // Finds the singular vectors. False where the method is not symplectic and symmetric with
+  // positive weights.
   template <int s>
   [[nodiscard]] bool set_method(const Tableau<T, s>& tableau) {
     using std::sqrt;
     stages = tableau.stages();
     count = 0;
     if (tableau.partitioned || !is_symplectic(tableau) || !is_symmetric(tableau)) return false;
+    if (!(tableau.b.head(stages).minCoeff() > T(0))) return false;  // they are scaled by roots of b
     count = (stages + 1) / 2;
     Weights beta;
     for (int i = 0; i < stages; ++i) beta[i] = sqrt(tableau.b[i]);
@@ -67,13 +69,14 @@ struct StagePairs {
   }
 
  private:
-  // mu_ij - 1/2 changes its sign where the stages are reversed.
+  // Where the stages are reversed b stays and mu_ij - 1/2 changes its sign.
   template <int s>
   static bool is_symmetric(const Tableau<T, s>& tableau) {
     using std::abs;
     const T round_off = T(1000) * epsilon<T>();
     const int last = tableau.stages() - 1;
     for (int i = 0; i <= last; ++i) {
+      if (!(abs(tableau.b[i] - tableau.b[last - i]) <= round_off)) return false;
       for (int j = 0; j <= last; ++j) {
         const T sum = tableau.mu(i, j) + tableau.mu(last - i, last - j);
         if (!(abs(sum - T(1)) <= round_off)) return false;

@@ -1,5 +1,7 @@
 #include "carnot/tableau/methods.h"
 
+#include <stdexcept>
+
 namespace carnot {
 
 const std::vector<Method>& methods() {
@@ -39,6 +41,17 @@ const Method* find_method(std::string_view name) {
     if (method.name == name) return &method;
   }
   return nullptr;
+}
+
+const Method& method_of_name(std::string_view name) {
+  const Method* const method = find_method(name);
+  if (method != nullptr) return *method;
+  throw std::invalid_argument("method " + std::string(name) + ": there is none of that name");
+}
+
+bool keeps_quadratic_invariants(const Method& method) {
+  return method.symplectic && (method.family == kGaussFamily || method.family == kComposedFamily ||
+                               method.family == kOwnFamily);
 }
 
 }  // namespace carnot

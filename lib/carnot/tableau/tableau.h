@@ -59,6 +59,13 @@ struct Tableau {
   alignas(64) StageMatrix<T, s> legendre;
 
   [[nodiscard]] int stages() const { return s == kAnyStages ? static_cast<int>(c.size()) : active; }
+  // Whether no b is 0, of the stages that are not idle.
+  [[nodiscard]] bool all_weighted() const {
+    for (int i = 0; i < stages(); ++i) {
+      if (update[i] != T(1)) return false;
+    }
+    return true;
+  }
   [[nodiscard]] T momentum_mu(int i, int j) const { return partitioned ? mu_p(i, j) : mu(i, j); }
 };
 
@@ -70,7 +77,7 @@ bool is_symplectic(const Tableau<T, s>& tableau) {
       if (tableau.mu(i, j) + tableau.momentum_mu(j, i) != T(1)) return false;
     }
   }
-  return (tableau.update.array() == T(1)).count() == tableau.stages();
+  return tableau.all_weighted();
 }
 
 // omega and update from b.
@@ -85,17 +92,24 @@ void set_weights(Tableau<T, s>& tableau) {
   }
 }
 
-// The extrapolation weights of distinct nodes c: omega_i/omega_j times the Lagrange polynomial l_j
-// at 1 + c_i.
+// The extrapolation weights of the nodes c: omega_i/omega_j times the Lagrange polynomial l_j at
+// 1 + c_i. Of nodes that are equal to one another the first one counts.
 template <class T, int s>
 void set_extrapolation(Tableau<T, s>& tableau) {
   const int count = tableau.stages();
-  tableau.extrapolation.resize(count, count);
+  const auto repeats = [&](int j) {
+    for (int i = 0; i < j; ++i) {
+      if (tableau.c[i] == tableau.c[j]) return true;
+    }
+    return false;
+  };
+  tableau.extrapolation.setZero(count, count);
   for (int i = 0; i < count; ++i) {
     for (int j = 0; j < count; ++j) {
+      if (repeats(j)) continue;
       T weight = tableau.omega[i] / tableau.omega[j];
       for (int k = 0; k < count; ++k) {
-        if (k == j) continue;
+        if (k == j || repeats(k)) continue;
         weight *= (T(1) + tableau.c[i] - tableau.c[k]) / (tableau.c[j] - tableau.c[k]);
       }
       tableau.extrapolation(i, j) = weight;

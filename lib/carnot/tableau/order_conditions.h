@@ -12,14 +12,14 @@
 
 #include "carnot/tableau/tableau.h"
 
-namespace carnot::test {
+namespace carnot {
 
 enum class Part { kPosition, kMomentum };  // of a partitioned method
 
-// a_ij.
+// a_ij = mu_ij omega_j.
 template <class T>
-StageMatrix<long double, kAnyStages> coefficients(const Tableau<T>& tableau,
-                                                  Part part = Part::kPosition) {
+StageMatrix<long double, kAnyStages> coefficients_of(const Tableau<T>& tableau,
+                                                     Part part = Part::kPosition) {
   const int s = tableau.stages();
   StageMatrix<long double, kAnyStages> a(s, s);
   for (int i = 0; i < s; ++i) {
@@ -31,8 +31,9 @@ StageMatrix<long double, kAnyStages> coefficients(const Tableau<T>& tableau,
   return a;
 }
 
+// x^exponent, with 0^0 = 1.
 template <class T>
-long double power(const T& x, int exponent) {
+long double power_of(const T& x, int exponent) {
   return exponent == 0 ? 1 : std::pow(static_cast<long double>(x), exponent);
 }
 
@@ -40,7 +41,7 @@ long double power(const T& x, int exponent) {
 template <class T>
 long double quadrature_defect(const Tableau<T>& tableau, int k) {
   long double sum = 0;
-  for (int j = 0; j < tableau.stages(); ++j) sum += tableau.b[j] * power(tableau.c[j], k - 1);
+  for (int j = 0; j < tableau.stages(); ++j) sum += tableau.b[j] * power_of(tableau.c[j], k - 1);
   return std::abs(static_cast<long double>(k) * sum - 1);
 }
 
@@ -50,12 +51,13 @@ long double stage_defect(const Tableau<T>& tableau,
                          int k,
                          Part part = Part::kPosition,
                          int first = 0) {
-  const auto a = coefficients(tableau, part);
+  const auto a = coefficients_of(tableau, part);
   long double defect = 0;
   for (int i = first; i < tableau.stages(); ++i) {
     long double sum = 0;
-    for (int j = 0; j < tableau.stages(); ++j) sum += a(i, j) * power(tableau.c[j], k - 1);
-    defect = std::max(defect, std::abs(static_cast<long double>(k) * sum - power(tableau.c[i], k)));
+    for (int j = 0; j < tableau.stages(); ++j) sum += a(i, j) * power_of(tableau.c[j], k - 1);
+    defect =
+        std::max(defect, std::abs(static_cast<long double>(k) * sum - power_of(tableau.c[i], k)));
   }
   return defect;
 }
@@ -63,17 +65,17 @@ long double stage_defect(const Tableau<T>& tableau,
 // Of D, times k: the largest over j.
 template <class T>
 long double transposed_defect(const Tableau<T>& tableau, int k, Part part = Part::kPosition) {
-  const auto a = coefficients(tableau, part);
+  const auto a = coefficients_of(tableau, part);
   long double defect = 0;
   for (int j = 0; j < tableau.stages(); ++j) {
     long double sum = 0;
     for (int i = 0; i < tableau.stages(); ++i) {
-      sum += tableau.b[i] * power(tableau.c[i], k - 1) * a(i, j);
+      sum += tableau.b[i] * power_of(tableau.c[i], k - 1) * a(i, j);
     }
-    const long double exact = tableau.b[j] * (1 - power(tableau.c[j], k));
+    const long double exact = tableau.b[j] * (1 - power_of(tableau.c[j], k));
     defect = std::max(defect, std::abs(static_cast<long double>(k) * sum - exact));
   }
   return defect;
 }
 
-}  // namespace carnot::test
+}  // namespace carnot

@@ -13,9 +13,9 @@
 #include <limits>
 #include <vector>
 
-#include "testing/order_conditions.h"
+#include "carnot/tableau/order_conditions.h"
 
-namespace carnot::test {
+namespace carnot {
 
 // The trees of one order; the colour of the root is not counted.
 struct TreeCheck {
@@ -35,8 +35,8 @@ class RootedTrees {
   // Sums are formed in long double.
   RootedTrees(const Tableau<T>& tableau, int max_order)
       : b_(tableau.b.template cast<long double>()) {
-    a_.push_back(coefficients(tableau));
-    if (tableau.partitioned) a_.push_back(coefficients(tableau, Part::kMomentum));
+    a_.push_back(coefficients_of(tableau));
+    if (tableau.partitioned) a_.push_back(coefficients_of(tableau, Part::kMomentum));
     const Weights one = Weights::Ones(tableau.stages());
     for (int order = 1; order <= max_order; ++order) {
       checks_.emplace_back();
@@ -127,4 +127,4 @@ class RootedTrees {
   std::vector<TreeCheck> checks_;
 };
 
-}  // namespace carnot::test
+}  // namespace carnot
