@@ -120,6 +120,24 @@ TEST_P(MakeKernel, MonitorsAgree) {
   }
 }
 
+// H changes by the integral of H_t, at samples between the nodes, too.
+TEST_P(MakeKernel, SamplesTellTheWork) {
+  std::vector<double> z = pair_.start;
+  MonitorOptions options;
+  options.samples = 37;
+  const FlowSummary summary = pair_.compiled.monitored_flow(plan_, z, options);
+  ASSERT_TRUE(summary.completed());
+  const Trajectory& samples = summary.trajectory;
+  ASSERT_EQ(samples.work.size(), samples.t.size());
+  EXPECT_EQ(samples.work.front(), 0);
+  EXPECT_EQ(samples.work.back(), summary.work);
+  EXPECT_EQ(summary.work == 0, pair_.compiled.autonomous);
+  for (std::size_t i = 0; i < samples.t.size(); ++i) {
+    const double change = samples.hamiltonian[i] - samples.hamiltonian.front();
+    EXPECT_NEAR(change, samples.work[i], kRoundOff) << samples.t[i];
+  }
+}
+
 TEST_P(MakeKernel, AutomaticFlowsReachTheTolerance) {
   constexpr double kTolerance = 1e-9;
   std::vector<double> exact = pair_.start;

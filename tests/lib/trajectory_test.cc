@@ -25,7 +25,7 @@ class TrajectoryTest : public ::testing::Test {
     Step step(system_);
     Recorder<Step> recorder(plan, samples, step, z);
     const FlowReport report = flow(step, plan, z, [&](long i, const Step& done, const auto& node) {
-      recorder(i, done, node);
+      recorder(i, done, node, 0);
       return true;
     });
     EXPECT_TRUE(report.completed());

@@ -38,8 +38,8 @@ TEST_F(FigureFile, NamesWhatItShows) {
                                  "x [length]",
                                  "y [length]",
                                  "t [time]",
-                                 "start",
-                                 "goal",
+                                 ">start<",
+                                 ">end<",
                                  "path of (x, y)",
                                  "other wheel"}) {
     EXPECT_NE(svg.find(text), std::string::npos) << text;

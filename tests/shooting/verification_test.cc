@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "carnot/make_dynamics.h"
+#include "carnot/scenes/kapitza_pendulum.h"
 #include "carnot/shooting/extremal/classification.h"
 #include "carnot/shooting/find_geodesics.h"
 #include "carnot/shooting/search/sweep.h"
@@ -100,6 +102,26 @@ TEST(Survey, SamplesAcrossKnotsAreThoseOfOneRun) {
       EXPECT_NEAR(one.trajectory.q[i][j], many.trajectory.q[i][j], 1e-11);
     }
   }
+}
+
+// H depends on time: it is that of the knot's own time, and the work goes on from knot to knot.
+TEST(Survey, AcrossKnotsTheEnergyIsThatOfOneRun) {
+  const BoundaryValueProblem problem(
+      make_dynamics(scenes::KapitzaPendulum{1, 1, 0.2, 5}), {0.7}, {0}, 1.7);
+  const FlowSummary one = survey(problem, knots_of(problem, {0.4}, 1, 64), 64, 21);
+  const FlowSummary many = survey(problem, knots_of(problem, {0.4}, 8, 64), 64, 21);
+  ASSERT_EQ(one.trajectory.work.size(), 21U);
+  ASSERT_EQ(many.trajectory.work.size(), 21U);
+  EXPECT_GT(std::abs(one.work), 0.01);
+  EXPECT_NEAR(many.work, one.work, 1e-12);
+  for (std::size_t i = 0; i < 21; ++i) {
+    const Trajectory& path = many.trajectory;
+    EXPECT_NEAR(path.work[i], one.trajectory.work[i], 1e-12);
+    EXPECT_NEAR(path.hamiltonian[i] - path.hamiltonian[0], path.work[i], 1e-12);
+  }
+  // Of many knots the largest drifts within a piece are added to that of its start.
+  EXPECT_GE(many.energy_drift, one.energy_drift - 1e-12);
+  EXPECT_LE(many.energy_drift, 2 * one.energy_drift);
 }
 
 TEST(Sweep, DoesNotDependOnThreads) {

@@ -140,7 +140,7 @@ FlowSummary monitored_flow(const void* opaque,
   summary.report = carnot::flow(stepper, plan, state, [&](long i, const Stepper& step, auto& node) {
     monitor(plan.time(i + 1), step, node);
     if (!std::isfinite(monitor.energy_drift())) return false;
-    recorder(i, step, winding.unfolded(node));
+    recorder(i, step, winding.unfolded(node), monitor.work());
     winding.fold(node);
     if (!options.progress || i % kProgressEvery != 0) return true;
     return options.progress(static_cast<double>(i) / static_cast<double>(plan.count));
@@ -153,6 +153,7 @@ FlowSummary monitored_flow(const void* opaque,
   }
   summary.action = monitor.action();
   summary.length = monitor.length();
+  summary.work = monitor.work();
   summary.energy_drift = monitor.energy_drift();
   summary.energy_balance = monitor.energy_balance();
   summary.constraint_error = monitor.constraint_error();

@@ -87,6 +87,9 @@ struct Trajectory {
   std::vector<std::vector<double>> p;
   std::vector<std::vector<double>> lambda;
   std::vector<double> hamiltonian;
+  // The integral of H_t from the first time on, by which H of the exact solution changes; 0 where H
+  // does not depend on time. Empty where it was not measured.
+  std::vector<double> work;
 };
 
 // `samples` equidistant times of the plan, ends included.
@@ -105,6 +108,7 @@ struct FlowSummary {
   FlowReport report;
   double action = 0;
   double length = 0;  // NaN where the scene has no metric
+  double work = 0;    // the integral of H_t
   double energy_drift = 0;
   double energy_balance = 0;
   double constraint_error = 0;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "carnot/flow/flow.h"
+#include "carnot/flow/stage_measures.h"
 #include "carnot/system/measures.h"
 
 namespace carnot {
@@ -30,12 +31,13 @@ class Recorder {
       : plan_(plan), times_(std::move(times)), node_(z), branch_(step.branch()) {
     const double tolerance = kNodeTolerance * std::abs(plan.length(0));
     if (times_.empty() || std::abs(times_[0] - plan.start) > tolerance) return;
-    record(step.system(), times_[0], z, branch_);
+    record(step.system(), times_[0], z, branch_, 0);
   }
   Recorder(const StepPlan& plan, long samples, const Stepper& step, const State<double, n>& z)
       : Recorder(plan, sample_times(plan, samples), step, z) {}
 
-  void operator()(long i, const Stepper& step, const State<double, n>& z) {
+  // `work` is the integral of H_t up to the node that the step has reached.
+  void operator()(long i, const Stepper& step, const State<double, n>& z, double work) {
     const double from = plan_.time(i);
     const double to = plan_.time(i + 1);
     const double tolerance = kNodeTolerance * std::abs(to - from);
@@ -43,18 +45,24 @@ class Recorder {
            std::abs(times_[next()] - from) <= std::abs(to - from) + tolerance) {
       const double t = times_[next()];
       if (std::abs(t - to) <= tolerance) {
-        record(step.system(), t, z, step.branch());
+        record(step.system(), t, z, step.branch(), work);
         continue;
       }
       Stepper shortened(step.system(), step.tableau());
       shortened.start_on(branch_);
       State<double, n> between = node_;
-      if (shortened.step(from, t - from, between).status != StepStatus::kOk) {
+      double work_between = work_;
+      if (shortened.step(from, t - from, between).status == StepStatus::kOk) {
+        measure_stages(step.system(), shortened, [&](double b, const PointMeasures& at) {
+          if (b != 0) work_between += (t - from) * b * at.power;
+        });
+      } else {
         between.value.setConstant(std::numeric_limits<double>::quiet_NaN());
       }
-      record(step.system(), t, between, shortened.branch());
+      record(step.system(), t, between, shortened.branch(), work_between);
     }
     node_ = z;
+    work_ = work;
     branch_ = step.branch();
   }
 
@@ -65,7 +73,7 @@ class Recorder {
 
   [[nodiscard]] std::size_t next() const { return trajectory_.t.size(); }
 
-  void record(const System& system, double t, const State<double, n>& z, Algebraic y) {
+  void record(const System& system, double t, const State<double, n>& z, Algebraic y, double work) {
     const Vector<double, n> q = z.value.template head<n>();
     const Vector<double, n> p = z.value.template tail<n>();
     Vector<double, k> lambda = Vector<double, k>::Zero();
@@ -78,12 +86,14 @@ class Recorder {
     trajectory_.lambda.emplace_back(lambda.data(), lambda.data() + multiplier_count(system));
     trajectory_.hamiltonian.push_back(ok ? system.hamiltonian(t, q, p, y)
                                          : std::numeric_limits<double>::quiet_NaN());
+    trajectory_.work.push_back(work);
   }
 
   StepPlan plan_;
   std::vector<double> times_;
   State<double, n> node_;
   Algebraic branch_;
+  double work_ = 0;  // up to node_
   Trajectory trajectory_;
 };
 

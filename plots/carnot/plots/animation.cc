@@ -31,7 +31,7 @@ Rows up_to(const Rows& points, std::size_t count) {
 
 std::string solid(const char* color) { return std::string(" lc rgb '") + color + "'"; }
 
-// Start and goal, pale.
+// Start and end, pale.
 void add_ghosts(Plot& plot,
                 const SceneInfo& info,
                 const Trajectory& trajectory,

@@ -1,4 +1,4 @@
-// A manoeuvre as a film: start and goal ghosted, the body moving, the path drawn as it is
+// A manoeuvre as a film: start and end ghosted, the body moving, the path drawn as it is
 // travelled. In space the view turns slowly.
 #pragma once
 

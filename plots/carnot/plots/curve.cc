@@ -51,6 +51,7 @@ Trajectory thinned(const Trajectory& trajectory, std::size_t rows) {
     thin.p.push_back(trajectory.p[i]);
     thin.lambda.push_back(trajectory.lambda[i]);
     thin.hamiltonian.push_back(trajectory.hamiltonian[i]);
+    if (!trajectory.work.empty()) thin.work.push_back(trajectory.work[i]);
   }
   return thin;
 }

@@ -71,8 +71,9 @@ std::string tic_number(double x, double span) {
 void set_axis(
     Script& script, const std::string& letter, const Axis& axis, double size, double spacing) {
   const double labels = std::max(2.0, size / spacing);
+  const int least = labels < 4 ? 2 : 3;
   script << "set " << letter << "range [" << axis.lower << ":" << axis.upper << "]\n";
-  script << "set " << letter << "tics " << round_step(axis.span() / labels) << "\n";
+  script << "set " << letter << "tics " << tic_step(axis, labels, least) << "\n";
 }
 
 void set_box(Script& script, const Picture& page, const Box& box) {

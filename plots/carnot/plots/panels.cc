@@ -107,7 +107,9 @@ void draw_legend(Script& script,
     double at = std::round((fits ? std::clamp(x, half, page.width - half) : page.width / 2) - half);
     for (const LegendEntry& entry : rows[i]) {
       if (!entry.line.empty()) samples.push_back({{{at, y, kSample, 0}}, sample(entry.line)});
-      if (!entry.point.empty()) samples.push_back({{{at + kSample / 2, y}}, entry.point});
+      for (const std::string& point : entry.points) {
+        samples.push_back({{{at + kSample / 2, y}}, point});
+      }
       put_text(script, page, at + kSample + kSpace, y, entry.title, "left");
       at += std::round(width_of(entry) + kGap);
     }

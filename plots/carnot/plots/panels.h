@@ -38,10 +38,10 @@ using DrawPanel = std::function<void(Script&, const Picture&, const Curve&, cons
 
 // Two lines of title for a page with one curve.
 void put_title(Script& script, const Picture& page, const SceneInfo& info, const Curve& curve);
-// One entry of a legend: a line style, a point style or both, and its title (markup).
+// One entry of a legend: a line style, points upon each other or both, and its title (markup).
 struct LegendEntry {
-  std::string line;   // "with lines ...", may be empty
-  std::string point;  // "with points ...", may be empty
+  std::string line;                 // "with lines ...", may be empty
+  std::vector<std::string> points;  // "with points ...", may be empty
   std::string title;
 };
 // A legend centred at x in the foot of the page, in one row or in as many as it needs to be no

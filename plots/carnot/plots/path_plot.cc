@@ -10,7 +10,18 @@ namespace {
 const std::string kLimitColor = " lc rgb '#f0b070'";
 const std::string kWheelStyle = "with lines lw 1 dt (6,4) lc rgb '#8c8c8c'";
 
-// The bodies between start and goal.
+// Numbers of gnuplot's filled marks.
+constexpr const char* kRound = "7";
+constexpr const char* kSquare = "5";
+
+// A mark with a white middle: two points upon each other.
+std::vector<std::string> open_mark(const char* mark, double size, const char* color) {
+  const std::string point = std::string("with points pt ") + mark + " ps ";
+  return {point + number(size, 3) + " " + line_color_of(color),
+          point + number(size / 2, 3) + " " + line_color_of("#ffffff")};
+}
+
+// The bodies between start and end.
 std::vector<std::size_t> between(const SceneInfo& info,
                                  const Trajectory& trajectory,
                                  std::size_t bodies) {
@@ -24,29 +35,28 @@ std::vector<std::size_t> between(const SceneInfo& info,
 std::vector<LegendEntry> path_legend(const SceneInfo& info,
                                      const Curve& curve,
                                      const PlaneFrame& frame) {
-  const std::string start = std::string(" lc rgb '") + TimeColors::kStart + "'";
-  const std::string goal = std::string(" lc rgb '") + TimeColors::kGoal + "'";
-  const auto body = [&](const std::string& color) {
-    return info.drawing.body ? "with lines lw 2.4" + color : std::string();
+  constexpr double kMark = 1.1;
+  const auto body = [&](const char* color) {
+    return info.drawing.body ? "with lines lw 2.4 " + line_color_of(color) : std::string();
   };
   const std::string coordinates = "(" + coordinate_symbol(info, axis_index(info, 0)) + ", " +
                                   coordinate_symbol(info, axis_index(info, 1)) + ")";
   const std::string& path = info.drawing.path;
   std::vector<LegendEntry> entries = {
-      {body(start), "with points pt 7 ps 1.1" + start, "start"},
-      {body(goal), "with points pt 5 ps 1.0" + goal, "goal"},
+      {body(TimeColors::kStart), open_mark(kRound, kMark, TimeColors::kStart), "start"},
+      {body(TimeColors::kEnd), open_mark(kSquare, kMark, TimeColors::kEnd), "end"},
       {"with lines lw 2.2 " + line_color_of(TimeColors::kMiddle),
-       "",
+       {},
        "path of " + (path.empty() ? "" : escaped(path) + " ") + coordinates}};
   const std::size_t wheels = other_wheels(info, *curve.trajectory, frame).size();
   if (wheels > 0)
-    entries.push_back({kWheelStyle, "", wheels == 1 ? "other wheel" : "other wheels"});
+    entries.push_back({kWheelStyle, {}, wheels == 1 ? "other wheel" : "other wheels"});
   if (!curve.on_limits.empty()) {
-    entries.push_back({"with lines lw 6" + kLimitColor, "", "at a limit"});
+    entries.push_back({"with lines lw 6" + kLimitColor, {}, "at a limit"});
   }
   if (info.drawing.body && !info.drawing.glyph.empty()) {
     entries.push_back({"with lines lw 1.4 " + line_color_of(TimeColors::kMiddle),
-                       "",
+                       {},
                        escaped(info.drawing.glyph)});
   }
   return entries;
@@ -77,14 +87,15 @@ void draw_path(Script& script,
   if (!limits.empty())
     plot.add(limits, "using 1:2 with linespoints pt 7 ps 0.9" + kLimitColor + width(7));
   plot.add(path, "using 1:2:3 with lines lc palette" + width(2.4));
-  const auto end = [&](std::size_t row, const std::string& mark, const char* color) {
+  const auto end = [&](std::size_t row, const char* mark, const char* color) {
     plot.add(lines({row}, Role::kBody, 0), style + width(2.4))
-        .add(lines({row}, Role::kWheel, 0), style + width(2))
-        .add({path[row]}, mark + number(1.2 * size, 3) + " lc rgb '" + color + "'")
-        .add({path[row]}, mark + number(0.6 * size, 3) + " lc rgb '#ffffff'");
+        .add(lines({row}, Role::kWheel, 0), style + width(2));
+    for (const std::string& point : open_mark(mark, 1.2 * size, color)) {
+      plot.add({path[row]}, point);
+    }
   };
-  end(0, "with points pt 7 ps ", TimeColors::kStart);
-  end(last, "with points pt 5 ps ", TimeColors::kGoal);
+  end(0, kRound, TimeColors::kStart);
+  end(last, kSquare, TimeColors::kEnd);
   plot.draw();
 }
 

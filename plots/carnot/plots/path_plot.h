@@ -1,7 +1,7 @@
 // A path in the plane, with outlines of the body at a few well chosen instants, so that the
 // manoeuvre can be read.
 //
-// Time is colour, from dark blue at the start to orange at the goal; the bodies at both ends are
+// Time is colour, from dark blue at the start to orange at the end; the bodies at both ends are
 // heavy and opaque, those between are thin and let others through, and the path is drawn on top of
 // these. Both axes have one scale. Several curves become panels with the same axes.
 #pragma once
@@ -14,7 +14,7 @@
 
 namespace carnot::plots {
 
-// Start, goal, path, and the other wheels and the body if there is something to say of them.
+// Start, end, path, and the other wheels and the body if there is something to say of them.
 std::vector<LegendEntry> path_legend(const SceneInfo& info,
                                      const Curve& curve,
                                      const PlaneFrame& frame);

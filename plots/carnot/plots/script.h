@@ -43,11 +43,11 @@ std::string line_color_of(const char* color);
 // Colours that colour-blind readers can tell apart (Okabe and Ito 2008).
 std::string line_color(std::size_t i);
 
-// Time, from start to goal: the darker three quarters of the "plasma" map, even in perception.
+// Time, from start to end: the darker three quarters of the "plasma" map, even in perception.
 struct TimeColors {
   static constexpr const char* kStart = "#0d0887";
   static constexpr const char* kMiddle = "#a82296";
-  static constexpr const char* kGoal = "#f07f2f";
+  static constexpr const char* kEnd = "#f07f2f";
   static std::string palette();
   // "0xAARRGGBB" for a fraction of the time; alpha 0 is opaque.
   static double argb(double fraction, int alpha);

@@ -18,7 +18,7 @@ const std::string kTic = "with lines lw 1 lc rgb '#000000'";
 const std::string kShadow = "with lines lw 1 lc rgb '#b4b4b4'";
 
 std::string start_color() { return " " + line_color_of(TimeColors::kStart); }
-std::string goal_color() { return " " + line_color_of(TimeColors::kGoal); }
+std::string end_color() { return " " + line_color_of(TimeColors::kEnd); }
 
 double time_fraction(const Trajectory& trajectory, double t) {
   const double span = trajectory.t.back() - trajectory.t.front();
@@ -80,15 +80,15 @@ Rows space_rows(const SceneInfo& info, const Trajectory& trajectory) {
 std::vector<LegendEntry> space_legend(const SceneInfo& info) {
   const Drawing& drawing = info.drawing;
   std::vector<LegendEntry> entries = {
-      {"", "with points pt 7 ps 1.2" + start_color(), "start"},
-      {"", "with points pt 5 ps 1.1" + goal_color(), "goal"},
+      {"", {"with points pt 7 ps 1.2" + start_color()}, "start"},
+      {"", {"with points pt 5 ps 1.1" + end_color()}, "end"},
       {"with lines lw 2.2 " + line_color_of(TimeColors::kMiddle),
-       "",
+       {},
        drawing.path.empty() ? "path" : "path of " + escaped(drawing.path)}};
-  if (drawing.sphere == 0) entries.push_back({kShadow, "", "shadow"});
+  if (drawing.sphere == 0) entries.push_back({kShadow, {}, "shadow"});
   if (drawing.body_in_space && !drawing.glyph.empty()) {
     entries.push_back(
-        {"with lines lw 1.4 " + line_color_of(TimeColors::kMiddle), "", escaped(drawing.glyph)});
+        {"with lines lw 1.4 " + line_color_of(TimeColors::kMiddle), {}, escaped(drawing.glyph)});
   }
   return entries;
 }
@@ -144,12 +144,12 @@ void draw_space(Script& script,
     plot.add(shadow, kShadow)
         .add({view.at(points.front()), floor_rows(view, {points.front()})[0]},
              "with lines lw 1 dt (4,4)" + start_color())
-        .add({view.at(end), floor_rows(view, {end})[0]}, "with lines lw 1 dt (4,4)" + goal_color());
+        .add({view.at(end), floor_rows(view, {end})[0]}, "with lines lw 1 dt (4,4)" + end_color());
   }
   plot.add(path.near, "using 1:2:3 with lines lc palette lw " + scaled(2.2));
   add_bodies(true);
   plot.add({view.at(points.front())}, "with points pt 7 ps " + scaled(1.2) + start_color())
-      .add({view.at(end)}, "with points pt 5 ps " + scaled(1.1) + goal_color());
+      .add({view.at(end)}, "with points pt 5 ps " + scaled(1.1) + end_color());
   plot.draw();
   clear_settings(script);
 }

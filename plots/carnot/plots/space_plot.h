@@ -1,4 +1,4 @@
-// A curve in space, in a box seen from above: time as colour, start and goal marked, and either its
+// A curve in space, in a box seen from above: time as colour, start and end marked, and either its
 // shadow on the floor or the sphere it lies on.
 #pragma once
 

@@ -49,18 +49,38 @@ TimePanel columns(const std::string& label,
   return panel;
 }
 
-// |H(t) - H(0)| on a logarithmic axis. The line leaves out what is exactly 0; dots above the lower
+// Whether H depends on time along one of the curves.
+bool has_work(const std::vector<Curve>& curves) {
+  return std::any_of(curves.begin(), curves.end(), [](const Curve& curve) {
+    const std::vector<double>& work = curve.trajectory->work;
+    return std::any_of(work.begin(), work.end(), [](double x) { return x != 0; });
+  });
+}
+
+// What is shown as the error, in markup.
+std::string energy_error(const std::vector<Curve>& curves) {
+  return has_work(curves) ? "|H − H(0) − ∫H_{t} dt|" : "|H − H(0)|";
+}
+
+// By how much H is not what it should be. Where it depends on time, it should change by its work.
+double energy_error(const Trajectory& trajectory, std::size_t row) {
+  const double change = trajectory.hamiltonian[row] - trajectory.hamiltonian.front();
+  if (trajectory.work.empty()) return std::abs(change);
+  return std::abs(change - (trajectory.work[row] - trajectory.work.front()));
+}
+
+// The error on a logarithmic axis. The line leaves out what is exactly 0; dots above the lower
 // edge stand for it, but for the first time, where it is 0 by definition.
 TimePanel energy(const std::vector<Curve>& curves, const std::vector<std::string>& titles) {
   TimePanel panel;
-  panel.label = "energy error";
+  panel.label = with_unit("error", "energy");
   panel.logarithmic = true;
   Interval range;  // of the exponent
   for (std::size_t c = 0; c < curves.size(); ++c) {
     const Trajectory& trajectory = *curves[c].trajectory;
     Line line{titles[c], {}};
     for (std::size_t row = 0; row < trajectory.t.size(); ++row) {
-      const double error = std::abs(trajectory.hamiltonian[row] - trajectory.hamiltonian.front());
+      const double error = energy_error(trajectory, row);
       if (error == 0) {
         if (row > 0) panel.zeros.push_back({trajectory.t[row], 0});
       } else {
@@ -100,7 +120,7 @@ std::vector<TimePanel> panels_of(const SceneInfo& info, const Curve& curve, cons
   if (on.momentum) panels.push_back(columns("p", trajectory, trajectory.p, p));
   if (on.multipliers && k > 0)
     panels.push_back(columns("λ", trajectory, trajectory.lambda, lambda));
-  if (on.energy) panels.push_back(energy({curve}, {"|H − H(0)| [energy]"}));
+  if (on.energy) panels.push_back(energy({curve}, {energy_error({curve})}));
   for (TimePanel& panel : panels) panel.shaded = curve.on_limits;
   return panels;
 }
@@ -217,10 +237,10 @@ Picture energy_picture(const SceneInfo& info, const std::vector<Curve>& curves) 
   for (std::size_t i = 0; i < shown; ++i) {
     const std::string name =
         first[i].name.empty() ? "curve " + std::to_string(i + 1) : first[i].name;
-    titles.push_back(shown == 1 ? "|H − H(0)|" : escaped(name));
+    titles.push_back(shown == 1 ? energy_error(first) : escaped(name));
   }
   TimePanel panel = energy(first, titles);
-  panel.label = "|H(t) − H(0)| [energy]";
+  panel.label = with_unit(energy_error(first), "energy");
   Picture page;
   page.height = 480;
   Script script;

@@ -293,6 +293,7 @@ Trajectory every(const Trajectory& dense, long stride, long samples) {
     some.p.push_back(dense.p[at]);
     some.lambda.push_back(dense.lambda[at]);
     some.hamiltonian.push_back(dense.hamiltonian[at]);
+    if (!dense.work.empty()) some.work.push_back(dense.work[at]);
   }
   return some;
 }

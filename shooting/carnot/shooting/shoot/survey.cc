@@ -26,12 +26,14 @@ std::vector<double> times_of_segment(const BoundaryValueProblem& problem,
   return times;
 }
 
-void append(Trajectory& to, const Trajectory& from) {
+// `work` was done before.
+void append(Trajectory& to, const Trajectory& from, double work) {
   to.t.insert(to.t.end(), from.t.begin(), from.t.end());
   to.q.insert(to.q.end(), from.q.begin(), from.q.end());
   to.p.insert(to.p.end(), from.p.begin(), from.p.end());
   to.lambda.insert(to.lambda.end(), from.lambda.begin(), from.lambda.end());
   to.hamiltonian.insert(to.hamiltonian.end(), from.hamiltonian.begin(), from.hamiltonian.end());
+  for (const double more : from.work) to.work.push_back(work + more);
 }
 
 }  // namespace
@@ -48,12 +50,13 @@ FlowSummary survey(const BoundaryValueProblem& problem,
     MonitorOptions options;
     options.times = times_of_segment(problem, knots.segments, i, samples);
     const std::span<const double> at(z);
+    const StepPlan plan = knot_plan(problem, knots.segments, i, steps);
     const double energy =
-        problem.dynamics.evaluate(0, at.first(knots.dof), at.subspan(knots.dof), velocity, lambda)
+        problem.dynamics
+            .evaluate(plan.start, at.first(knots.dof), at.subspan(knots.dof), velocity, lambda)
             .hamiltonian;
     if (i == 0) initial = energy;
-    const FlowSummary part =
-        problem.dynamics.monitored_flow(knot_plan(problem, knots.segments, i, steps), z, options);
+    const FlowSummary part = problem.dynamics.monitored_flow(plan, z, options);
     total.report = part.report;
     if (!part.completed()) return total;
     total.action += part.action;
@@ -61,7 +64,8 @@ FlowSummary survey(const BoundaryValueProblem& problem,
     total.energy_drift =
         std::max(total.energy_drift, part.energy_drift + std::abs(energy - initial));
     total.constraint_error = std::max(total.constraint_error, part.constraint_error);
-    append(total.trajectory, part.trajectory);
+    append(total.trajectory, part.trajectory, total.work);
+    total.work += part.work;
   }
   return total;
 }
