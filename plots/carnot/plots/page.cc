@@ -95,7 +95,7 @@ void put_text(Script& script,
 
 void clear_settings(Script& script) {
   script
-      << "unset label\nunset logscale\nunset colorbox\nunset grid\nset origin 0, 0\n"
+      << "unset label\nunset object\nunset logscale\nunset colorbox\nunset grid\nset origin 0, 0\n"
       << "set size noratio 1, 1\nset key default\nset tics offset 0, 0\nset xlabel '' offset 0, 0\n"
       << "set ylabel '' offset 0, 0\nset format '%h'\n";
 }
