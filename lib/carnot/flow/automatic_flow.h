@@ -24,6 +24,7 @@
 #include <cstdlib>
 
 #include "carnot/flow/flow.h"
+#include "carnot/flow/winding.h"
 #include "carnot/step/runge_kutta.h"
 
 namespace carnot {
@@ -150,12 +151,14 @@ Trial<Stepper> trial(const Stepper& fresh,
 }  // namespace automatic
 
 // Advances z by `duration` with an error of about `tolerance` (max-norm of q and p at the end).
+// `winding` knows the periods of the angles, which are kept small in the runs.
 template <class Stepper>
 AutomaticFlow automatic_flow(const Stepper& fresh,
                              double start,
                              double duration,
                              double tolerance,
-                             State<double, Stepper::kDof>& z) {
+                             State<double, Stepper::kDof>& z,
+                             const Winding<Stepper::kDof>& winding = {}) {
   using namespace automatic;
   AutomaticFlow result;
   const double order = fresh.tableau().order;
@@ -170,7 +173,12 @@ AutomaticFlow automatic_flow(const Stepper& fresh,
     result.plan.stop = stop;
     Stepper stepper = beginner(fresh, kRunIterations);
     end = z;
-    result.report = flow(stepper, result.plan, end);
+    auto turns = winding;
+    result.report = flow(stepper, result.plan, end, [&](long, const Stepper&, auto& node) {
+      turns.fold(node);
+      return true;
+    });
+    end = turns.unfolded(end);
     result.evaluations += result.report.evaluations;
     return result.report.completed() && end.value.allFinite();
   };

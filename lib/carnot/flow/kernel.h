@@ -173,7 +173,8 @@ AutomaticFlow automatic_flow(const void* opaque,
   const auto& system = method.system(opaque);
   const auto stepper = stepper_of(method, system, opaque);
   auto state = load<M::n>(z);
-  const AutomaticFlow result = carnot::automatic_flow(stepper, start, duration, tolerance, state);
+  const AutomaticFlow result =
+      carnot::automatic_flow(stepper, start, duration, tolerance, state, method.winding);
   view<2 * M::n>(z) = state.value;
   return result;
 }
