@@ -4,9 +4,9 @@
 // sum_m a_m sin(m pi s) in every coordinate. Every fourth start is designed while there are any
 // left: it has the first mode in one coordinate and the second in another, each with either sign.
 // Such a path encloses area in the plane of the two, which is how brackets of the admissible
-// directions are made; a change of sign is its mirror image. The rest are random combinations. Each
-// has a generator of its own, so that start i is the same whatever else is computed. Nothing
-// depends on where the origin is.
+// directions are made; a change of sign is its mirror image. The rest are random combinations,
+// of few modes or of many in turn. Each has a generator of its own, so that start i is the same
+// whatever else is computed. Nothing depends on where the origin is.
 //
 // The scale: let D be the length of the straight line in the metric M, and S the length of one
 // radian. The wiggle has the size S (D/S)^e with e = 1/3, 1/2, 1 in turn, because a displacement of
