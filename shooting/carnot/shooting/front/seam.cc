@@ -191,17 +191,17 @@ std::vector<int> sew(const std::vector<BorderVertex>& border,
   return classes;
 }
 
-std::set<Edge> doubled_edges(const std::vector<int>& classes, const Surface& surface) {
+std::vector<Edge> doubled_edges(const std::vector<int>& classes, const Surface& surface) {
   const std::map<Edge, int> edges = edges_of(surface);
   std::map<Edge, int> merged;
   const auto image = [&](const Edge& edge) {
     return edge_of(classes[edge.first], classes[edge.second]);
   };
   for (const auto& [edge, count] : edges) merged[image(edge)] += count;
-  std::set<Edge> doubled;
+  std::vector<Edge> doubled;
   for (const auto& [edge, count] : edges) {
     const Edge one = image(edge);
-    if (count == 2 && one.first != one.second && merged[one] > 2) doubled.insert(edge);
+    if (count == 2 && one.first != one.second && merged[one] > 2) doubled.push_back(edge);
   }
   return doubled;
 }

@@ -7,7 +7,6 @@
 #pragma once
 
 #include <functional>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -30,7 +29,7 @@ std::vector<int> sew(const std::vector<BorderVertex>& border,
 
 // Edges inside the surface whose ends are one with those of another edge. Where the border folds
 // onto itself, two of its vertices that are one may have a common neighbour.
-std::set<Edge> doubled_edges(const std::vector<int>& classes, const Surface& surface);
+std::vector<Edge> doubled_edges(const std::vector<int>& classes, const Surface& surface);
 
 // V - E + F, and whether each edge is in two triangles, of a curve each vertex in two segments. All
 // vertices count that a triangle has.

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <set>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 namespace carnot::internal {
@@ -54,10 +55,19 @@ struct EdgeHash {
   }
 };
 
+using EdgeSet = std::unordered_set<Edge, EdgeHash>;
+
+// In an order that depends on nothing else.
+std::vector<Edge> in_order(const EdgeSet& edges) {
+  std::vector<Edge> list(edges.begin(), edges.end());
+  std::sort(list.begin(), list.end());
+  return list;
+}
+
 // The segments that ask to be cut.
-std::set<Edge> segments_to_cut(const Refinement& how, const Surface& surface) {
+std::vector<Edge> segments_to_cut(const Refinement& how, const Surface& surface) {
   std::vector<std::vector<int>> others(surface.vertices.size());
-  std::set<Edge> cut;
+  EdgeSet cut;
   const auto image = [&](int i) -> const Point& { return surface.vertices[i].image; };
   for (const auto& [a, b] : surface.segments) {
     others[a].push_back(b);
@@ -77,15 +87,15 @@ std::set<Edge> segments_to_cut(const Refinement& how, const Surface& surface) {
     if (before > how.shortest) cut.insert(edge_of(at, others[i][0]));
     if (after > how.shortest) cut.insert(edge_of(at, others[i][1]));
   }
-  return cut;
+  return in_order(cut);
 }
 
 // The edges of triangles that ask to be cut.
-std::set<Edge> edges_to_cut(const Refinement& how, const Surface& surface) {
+std::vector<Edge> edges_to_cut(const Refinement& how, const Surface& surface) {
   // Of the first triangle that has the edge. Nothing depends on the order.
   std::unordered_map<Edge, int, EdgeHash> opposite;
   opposite.reserve(3 * surface.triangles.size() / 2);
-  std::set<Edge> cut;
+  EdgeSet cut;
   const auto image = [&](int i) -> const Point& { return surface.vertices[i].image; };
   for (const auto& triangle : surface.triangles) {
     for (int k = 0; k < 3; ++k) {
@@ -101,21 +111,19 @@ std::set<Edge> edges_to_cut(const Refinement& how, const Surface& surface) {
     }
   }
   // A triangle that is cut is cut on its longest side, too: or it would become a sliver.
-  std::set<Edge> longest;
+  EdgeSet longest;
   for (const auto& triangle : surface.triangles) {
+    const auto side = [&](int k) { return edge_of(triangle[k], triangle[(k + 1) % 3]); };
+    if (!cut.contains(side(0)) && !cut.contains(side(1)) && !cut.contains(side(2))) continue;
     std::array<double, 3> length{};
-    bool any = false;
     for (int k = 0; k < 3; ++k) {
       length[k] = distance(image(triangle[k]), image(triangle[(k + 1) % 3]));
-      any = any || cut.contains(edge_of(triangle[k], triangle[(k + 1) % 3]));
     }
     const auto k = std::max_element(length.begin(), length.end()) - length.begin();
-    if (any && length[k] > how.shortest) {
-      longest.insert(edge_of(triangle[k], triangle[(k + 1) % 3]));
-    }
+    if (length[k] > how.shortest) longest.insert(side(static_cast<int>(k)));
   }
   cut.merge(longest);
-  return cut;
+  return in_order(cut);
 }
 
 // The triangle with middles on some of its sides, side k between corners k and k + 1; -1: none.
@@ -173,8 +181,9 @@ std::vector<std::vector<int>> Surface::neighbours() const {
   return lists;
 }
 
-bool cut_edges(const std::set<Edge>& cut, const MakeVertices& make, Surface& surface) {
-  std::map<Edge, int> middle;
+bool cut_edges(const std::vector<Edge>& cut, const MakeVertices& make, Surface& surface) {
+  std::unordered_map<Edge, int, EdgeHash> middle;
+  middle.reserve(cut.size());
   std::vector<Between> parents;
   const int first = static_cast<int>(surface.vertices.size());
   for (const Edge& edge : cut) {
@@ -212,7 +221,7 @@ long refine(const Refinement& how, Surface& surface) {
     return surface.segments.empty() ? edges_to_cut(how, surface) : segments_to_cut(how, surface);
   };
   for (int round = 0; round < kMostRounds; ++round) {
-    const std::set<Edge> cut = wishes();
+    const std::vector<Edge> cut = wishes();
     if (cut.empty()) return 0;
     if (static_cast<long>(surface.vertices.size() + cut.size()) > how.most) {
       return static_cast<long>(cut.size());

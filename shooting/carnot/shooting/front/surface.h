@@ -8,7 +8,6 @@
 
 #include <array>
 #include <functional>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -63,8 +62,8 @@ struct Refinement {
 // How many edges still ask to be cut when `most` is reached; -1 where it was stopped.
 long refine(const Refinement& how, Surface& surface);
 
-// Gives each of these edges a vertex in its middle. False when stopped.
-bool cut_edges(const std::set<Edge>& cut, const MakeVertices& make, Surface& surface);
+// Gives each of these edges, which differ, a vertex in its middle. False when stopped.
+bool cut_edges(const std::vector<Edge>& cut, const MakeVertices& make, Surface& surface);
 
 // Cuts the surface where `inside` changes and keeps what is inside. `locate` gives the place of the
 // border on the edges that cross it, from an inner vertex to an outer one, and `make` makes these
