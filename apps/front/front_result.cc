@@ -95,7 +95,9 @@ Json surface_json(const FrontRequest& request, const FrontMesh& mesh) {
     json["cusps"] = Json::array();
     for (const CuspEdge& edge : mesh.cusps) {
       Json line;
+      const auto umbilic = [](int i) { return i < 0 ? Json(nullptr) : Json(i); };
       line["closed"] = edge.closed;
+      line["umbilics"] = {umbilic(edge.first_umbilic), umbilic(edge.last_umbilic)};
       line["points"] = Json::array();
       for (const FrontVertex& point : edge.points) line["points"].push_back(singular_json(point));
       json["cusps"].push_back(std::move(line));
@@ -127,11 +129,16 @@ Json surfaces_json(const FrontRequest& request,
 
 std::string cusps_text(const FrontMesh& mesh) {
   constexpr int kDigits = 12;
-  const auto closed = std::count_if(
-      mesh.cusps.begin(), mesh.cusps.end(), [](const CuspEdge& edge) { return edge.closed; });
-  std::string text = fmt::format("{} closed cusp lines, {} open ones\n",
+  const auto count = [&](const auto& which) {
+    return std::count_if(mesh.cusps.begin(), mesh.cusps.end(), which);
+  };
+  const auto closed = count([](const CuspEdge& edge) { return edge.closed; });
+  const auto between =
+      count([](const CuspEdge& edge) { return edge.first_umbilic >= 0 && edge.last_umbilic >= 0; });
+  std::string text = fmt::format("cusp lines: {} closed, {} from umbilic to umbilic, {} other\n",
                                  closed,
-                                 static_cast<long>(mesh.cusps.size()) - closed);
+                                 between,
+                                 static_cast<long>(mesh.cusps.size()) - closed - between);
   for (const FrontVertex& point : mesh.umbilics) {
     text += fmt::format("{} at {}, time {}\n",
                         point.label,

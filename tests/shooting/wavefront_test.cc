@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <numbers>
+#include <set>
 #include <stdexcept>
 #include <vector>
 
@@ -272,15 +274,14 @@ TEST(Wavefront, SeesEvenMultiplicities) {
   }
 }
 
-// Of a general point of an ellipsoid with different axes: four hyperbolic umbilics, which the
-// method's symplectic form keeps at a few coarse steps, too (Offen & Ober-Bloebaum 2021).
 // Of a general point of an ellipsoid with different axes, four hyperbolic umbilics (Offen &
 // Ober-Bloebaum 2021). Both sheets that meet there lead to the same ones. On each of them one cusp
-// line is closed, and two lead from one umbilic to another.
+// line is closed, and two lead from one umbilic to another: those of both sheets together close.
 TEST(Wavefront, TheEllipsoidHasFourHyperbolicUmbilics) {
   const Dynamics dynamics = ellipsoid({1, 1.2, 1.5, 1.9});
   constexpr double kSame = 1e-10;
   std::vector<std::vector<double>> first;
+  std::array<std::array<int, 4>, 2> across{};  // of each sheet: the umbilic at the other end
   for (const int order : {1, 2}) {
     FrontOptions options = coarse(FrontKind::kCaustic, 12);
     options.fixed = {{3, 0.0}};
@@ -297,17 +298,42 @@ TEST(Wavefront, TheEllipsoidHasFourHyperbolicUmbilics) {
         1);
     if (order == 1) {
       for (const FrontVertex& v : mesh.umbilics) first.push_back(v.q);
-      continue;
     }
-    for (const FrontVertex& v : mesh.umbilics) {
-      const auto is_here = [&](const std::vector<double>& q) {
+    // The place among the umbilics of the first sheet.
+    const auto place = [&](int umbilic) {
+      const std::vector<double>& q = mesh.umbilics[umbilic].q;
+      const auto found = std::find_if(first.begin(), first.end(), [&](const auto& other) {
         double apart = 0;
-        for (int j = 0; j < 4; ++j) apart = std::max(apart, std::abs(q[j] - v.q[j]));
+        for (int j = 0; j < 4; ++j) apart = std::max(apart, std::abs(q[j] - other[j]));
         return apart < kSame;
-      };
-      EXPECT_EQ(std::count_if(first.begin(), first.end(), is_here), 1);
+      });
+      EXPECT_NE(found, first.end());
+      return static_cast<int>(found - first.begin());
+    };
+    auto& other_end = across[order - 1];
+    other_end.fill(-1);
+    for (const CuspEdge& edge : mesh.cusps) {
+      if (edge.closed) continue;
+      ASSERT_GE(edge.first_umbilic, 0);
+      ASSERT_GE(edge.last_umbilic, 0);
+      EXPECT_EQ(edge.points.front().q, mesh.umbilics[edge.first_umbilic].q);
+      EXPECT_EQ(edge.points.back().q, mesh.umbilics[edge.last_umbilic].q);
+      const int a = place(edge.first_umbilic);
+      const int b = place(edge.last_umbilic);
+      other_end[a] = b;
+      other_end[b] = a;
     }
   }
+  // From sheet to sheet, all four are passed before the line closes.
+  std::set<int> passed;
+  int at = 0;
+  for (int i = 0; i < 4; ++i) {
+    passed.insert(at);
+    at = across[i % 2][at];
+    ASSERT_GE(at, 0);
+  }
+  EXPECT_EQ(at, 0);
+  EXPECT_EQ(passed.size(), 4U);
 }
 
 TEST(Wavefront, IsRefinedUntilEdgesAreShort) {

@@ -325,7 +325,7 @@ class FrontMaker {
          options_.threads,
          [this] { return go_on(); }});
     for (const CuspLine& line : lines.cusps) {
-      CuspEdge edge{{}, line.closed};
+      CuspEdge edge{{}, line.closed, line.first_umbilic, line.last_umbilic};
       for (const CausticPoint& point : line.points) {
         edge.points.push_back(vertex_at(point.at, point.t, "cusp"));
       }

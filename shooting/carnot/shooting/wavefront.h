@@ -66,10 +66,14 @@ struct FrontVertex {
   const char* label = "";
 };
 
-// Where a caustic has a sharp edge, point after point.
+// Where a caustic has a sharp edge, point after point. It may end at umbilics, where it goes over
+// to the next sheet, that of another order: these are the ends of `points`, and here are their
+// places in FrontMesh::umbilics; -1 where it ends elsewhere.
 struct CuspEdge {
   std::vector<FrontVertex> points;
   bool closed = false;
+  int first_umbilic = -1;
+  int last_umbilic = -1;
 };
 
 struct FrontMesh {

@@ -33,6 +33,7 @@ class Lines {
     if (!request_.go_on()) return lines;
     find_umbilics(lines.umbilics);
     find_cusps(lines.cusps);
+    lead_to_umbilics(lines.umbilics, lines.cusps);
     lines.finished = request_.go_on();
     return lines;
   }

@@ -4,27 +4,17 @@
 // directions, and C is odd in them; so along an edge C is compared for directions of one side.
 // Where it changes its sign the edge meets a cusp line, which is located there, and triangles tell
 // which of these points follow each other. Close to an umbilic kernels turn within a triangle;
-// lines end there, and may be broken. Umbilics are looked for from each vertex at which E is nearer
-// to zero than at its neighbours.
+// lines end there, and may be broken (cusp_ends.h). Umbilics are looked for from each vertex at
+// which E is nearer to zero than at its neighbours.
 #pragma once
 
 #include <functional>
 #include <vector>
 
-#include "carnot/shooting/front/caustic_form.h"
+#include "carnot/shooting/front/cusp_ends.h"
 #include "carnot/shooting/front/surface.h"
 
 namespace carnot::internal {
-
-struct CausticPoint {
-  UnitMomentum at;
-  double t = 0;
-};
-
-struct CuspLine {
-  std::vector<CausticPoint> points;
-  bool closed = false;
-};
 
 struct CausticLines {
   bool finished = false;  // false: stopped
