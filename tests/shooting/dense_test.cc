@@ -121,6 +121,30 @@ TEST(Dense, SymmetricEigenvaluesAscend) {
   expect_equal(eigen.vectors * eigen.values.asDiagonal() * eigen.vectors.transpose(), a);
 }
 
+// As many as the eigenvalues tell, for bounds between them, and close to one of them.
+TEST(Dense, CountsEigenvaluesBelowABound) {
+  constexpr double kClose = 1e-12;
+  std::mt19937 generator(11);
+  std::normal_distribution<double> normal;
+  for (int sample = 0; sample < 200; ++sample) {
+    const int n = 1 + sample % 6;
+    const MatrixXd some = MatrixXd::NullaryExpr(n, n, [&] { return normal(generator); });
+    const MatrixXd a = some + some.transpose();
+    const VectorXd values = symmetric_eigen(a).values;
+    EXPECT_EQ(count_below(a, values[0] - 1), 0);
+    EXPECT_EQ(count_below(a, values[n - 1] + 1), n);
+    for (int i = 0; i < n; ++i) {
+      EXPECT_EQ(count_below(a, values[i] - kClose), i);
+      EXPECT_EQ(count_below(a, values[i] + kClose), i + 1);
+    }
+  }
+  // Without a pivot to begin with.
+  SmallMatrix saddle(2, 2);
+  saddle << 0, 1, 1, 0;
+  EXPECT_EQ(count_below(saddle, 0), 1);
+  EXPECT_EQ(count_below(SmallMatrix::Zero(3, 3), 0), 0);
+}
+
 TEST(Dense, SingularValuesDescend) {
   const MatrixXd left = orthonormal(random_matrix(6, 3, 7));
   const MatrixXd right = orthonormal(random_matrix(3, 3, 8));

@@ -149,6 +149,27 @@ std::optional<VectorXd> kernel_line(const MatrixXd& rows, double full_rank) {
 
 // Jacobi's method, row by row: small eigenvalues keep their digits beside large ones. Some ten
 // sweeps; ends where the entries beside the diagonal are round-off of those on it.
+int count_below(const SmallMatrix& a, double bound) {
+  constexpr double kClear = 1e-6;  // of a pivot, relative: eliminated with, it costs six digits
+  const Eigen::Index n = a.rows();
+  const double size = a.cwiseAbs().maxCoeff() + std::abs(bound);
+  SmallMatrix rest = a;
+  rest.diagonal().array() -= bound;
+  int count = 0;
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const double pivot = rest(k, k);
+    if (!(std::abs(pivot) > kClear * size)) {
+      return static_cast<int>((symmetric_eigen(a).values.array() < bound).count());
+    }
+    count += pivot < 0 ? 1 : 0;
+    for (Eigen::Index i = k + 1; i < n; ++i) {
+      const double factor = rest(i, k) / pivot;
+      for (Eigen::Index j = k + 1; j < n; ++j) rest(i, j) -= factor * rest(k, j);
+    }
+  }
+  return count;
+}
+
 SymmetricEigen symmetric_eigen(const MatrixXd& a) {
   constexpr double kEps = std::numeric_limits<double>::epsilon();
   constexpr int kMostSweeps = 60;

@@ -27,17 +27,17 @@ struct Node {
   SmallMatrix p;
 };
 
-// F at the end of a step: eigenvalues, ascending, and how many count as negative.
+// F at the end of a step, and how many of its eigenvalues count as negative.
 struct Form {
-  SymmetricEigen eigen;
+  SmallMatrix f;
   int negative = 0;
   SmallMatrix lift;  // A^-T P, and dF/dt = lift' H_pp lift
 };
 
 Form form_of(const SmallMatrix& f, double size) {
   Form form;
-  form.eigen = symmetric_eigen(0.5 * (f + f.transpose()));
-  form.negative = static_cast<int>((form.eigen.values.array() < -kRounding * size).count());
+  form.f = 0.5 * (f + f.transpose());
+  form.negative = count_below(form.f, -kRounding * size);
   return form;
 }
 
@@ -142,16 +142,23 @@ class Count {
     const auto value_at = [&](double at) -> std::optional<ValueAndSlope> {
       if (advance(dynamics_, node_, at, middle, form) != Advance::kDone) return std::nullopt;
       std::swap(middle, last);
-      return ValueAndSlope{form.eigen.values[which], rate_of(form, which, last.z)};
+      const SymmetricEigen eigen = symmetric_eigen(form.f);
+      const Eigen::VectorXd w = form.lift * eigen.vectors.col(which);
+      return ValueAndSlope{eigen.values[which], rate_along(w, last.z)};
     };
     (void)bracketed_newton(
-        node_.t, before.eigen.values[which], t, after.eigen.values[which], kNear * t, value_at);
+        node_.t, value_of(before, which), t, value_of(after, which), kNear * t, value_at);
     found = ConjugatePoint{last.t, std::move(last.z)};
   }
 
-  // Of an eigenvalue, at the phase point z. H_pp w is the velocity at (q, w): H is quadratic in p.
-  [[nodiscard]] double rate_of(const Form& form, int which, const std::vector<double>& z) const {
-    const Eigen::VectorXd w = form.lift * form.eigen.vectors.col(which);
+  // Of the eigenvalues, ascending.
+  [[nodiscard]] static double value_of(const Form& form, int which) {
+    return symmetric_eigen(form.f).values[which];
+  }
+
+  // Of an eigenvalue, at the phase point z: w' H_pp w, where w is its vector, lifted. H_pp w is the
+  // velocity at (q, w), since H is quadratic in p.
+  [[nodiscard]] double rate_along(const Eigen::VectorXd& w, const std::vector<double>& z) const {
     std::vector<double> at = z;
     std::copy(w.begin(), w.end(), at.begin() + dynamics_.dof);
     return w.dot(motion_at(dynamics_, at.data()).velocity);
