@@ -6,45 +6,55 @@ namespace carnot::internal {
 namespace {
 
 // The percentages are arithmetic: if one start in m leads to an extremal, and starts are
-// independent, n of them miss it with probability (1 - 1/m)^n. What is measured was measured on 420
-// random targets, from the origin: positions within 1 (vehicle, unicycle, trailer1, trailer2,
-// falling-cat) and within 15 (vehicle, trailer1). Where nothing is said, what stands beside a value
-// is what it does, and no measurement of it is on record.
+// independent, n of them miss it with probability (1 - 1/m)^n. What is measured was measured, where
+// nothing else is said, on 1,420 targets from the origin: 960 random ones of vehicle, unicycle,
+// trailer1, trailer2 and engel, 200 of falling-cat, 200 of vehicle that are 1e-4 to 0.1 away, and
+// 60 with drift. Missed is what another run found less action for, of 23 runs, one of them with 400
+// starts for each target; times are relative. As they are, 7 of falling-cat are missed, and no
+// other.
 
 // Starts between two looks at the list. Where one geodesic is wanted, rounds between 8 and 16
 // starts are half as long: the looks are after 8, 12, 16, 24, 32, ... starts.
 constexpr int kRound = 8;
 // The least number of starts where they do not agree. 16 starts miss with 1 % what one in four
-// leads to, and with 12 % what one in eight does.
+// leads to, and with 12 % what one in eight does. With 12, 9 targets are missed; with 24 as many as
+// with 16, in the same time.
 constexpr int kMinStarts = 16;
 // The same by the ways to a near target, which take turns every eight starts (NearTarget::way): 24
-// starts are twelve that go straight and six by each of two dilations.
+// starts are twelve that go straight and six by each of two dilations. With 16 near targets take
+// 0.89 of the time, with 32 1.15, and nothing changes on these 200.
 constexpr int kMinNear = 24;
-// The least number where most starts agree. 12 starts miss with 3 % what one in four leads to.
+// The least number where most starts agree. 12 starts miss with 3 % what one in four leads to. With
+// 16 all take 1.05 of the time, and nothing changes.
 constexpr int kMinEasy = 12;
-// The limit. 240 starts miss with 1 % what one in 52 leads to. With 96, and without an estimate of
-// what is missed, 11 of the 420 answers were not the least that is known; now all are.
+// The limit. 240 starts miss with 1 % what one in 52 leads to. With 120, 10 targets are missed, in
+// 0.72 of the time, with 480 2 targets, in 1.54; all of them of falling-cat.
 constexpr int kMaxStarts = 240;
 // So many times the limit of starts do not count where they are blocked: at most three times the
-// limit are drawn.
+// limit are drawn. Of 60 random targets of bicycle 44, 50 and 51 are reached with 0, 2 and 4, in
+// 0.40, 1 and 1.41 of the time.
 constexpr int kMaxBlocked = 2;
-// Rounds of near hits, where more than the best is wanted.
+// Rounds of near hits, where more than the best is wanted. All extremals of vehicle up to length 14
+// to 12 targets: 61, 64 and 65 with 12, 24 and 48 rounds, in 0.51, 1 and 1.99 of the time.
 constexpr int kSweeps = 24;
-// Hits of the least action before a search ends.
+// Hits of the least action before a search ends. With 2, 8 targets are missed, in 0.94 of the time;
+// with 5, 6 targets, in 1.01.
 constexpr int kEnoughHits = 3;
 // The same where there is drift. Its starts find minima only, and the search has to know that the
-// least of them is the least.
+// least of them is the least. With 3 and with 8 nothing changes on these 60.
 constexpr int kEnoughDriftHits = 5;
 // Starts that converge before a search ends, for each rival: where there is one, there may be
 // another. With 8, trailer1 to (0, 0.5, 0, 0) ended without the least action, which one start in
-// four leads to. With 12, sideways parking takes 80 starts, where 32 hit the least ten times.
+// four leads to. With 12, sideways parking takes 80 starts, where 32 hit the least ten times. With
+// 6, 8 targets are missed, in 0.96 of the time; with 14, 7 targets, in 1.11.
 constexpr int kConvergedPerRival = 10;
-// So many extremals that were missed by Chao's estimate are one too many. Of extremals near the
-// least alone the estimate is too low: 3 of the 420 were missed, in 0.56 of the time.
+// So many extremals that were missed by Chao's estimate are one too many. Without the estimate 11
+// targets are missed, in 0.68 of the time; with half as much 6, in 1.05.
 constexpr double kMostMissed = 1;
-// The share of the starts of an easy problem that converge: 9 of 12.
+// The share of the starts of an easy problem that converge: 9 of 12. With 0.5 and 0.9 nothing
+// changes.
 constexpr double kMostConverged = 0.75;
-// The share of them that hit the least action: 8 of 12.
+// The share of them that hit the least action: 8 of 12. With 0.4 and 0.8 nothing changes.
 constexpr double kMostHits = 0.6;
 
 }  // namespace
