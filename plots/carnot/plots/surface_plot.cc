@@ -165,7 +165,7 @@ void draw_lines(Script& script,
                 const SurfacePage& page,
                 const std::array<Axis, 3>& axes,
                 const std::array<int, 2>& on,
-                const char* key,
+                const std::string& key,
                 const std::vector<Pieces>& sheets) {
   Axis x = axes[on[0]];
   Axis y = axes[on[1]];
@@ -202,16 +202,23 @@ void draw_section(Script& script,
                   const SurfacePage& page,
                   const std::array<Axis, 3>& axes) {
   const Box box{925, 110, 430, 490};
+  constexpr double kTitle = 100;  // above the box, with up to three rows of the legend between them
+  constexpr double kLegend = 84;
   std::vector<Pieces> sheets;
   for (const SurfaceSheet& sheet : page.sheets) {
     sheets.push_back(section_of(sheet, page.across, page.at));
   }
+  const double middle = box.x + box.width / 2;
+  const double top = box.y + box.height;
   put_text(script,
            picture,
-           box.x + box.width / 2,
-           box.y + box.height + 55,
+           middle,
+           top + kTitle,
            "section at " + symbol(page.axes[page.across].name) + " = " + number(page.at, 4));
-  draw_lines(script, picture, box, page, axes, others(page.across), "outside top center", sheets);
+  const std::string key = "at screen " + number(middle / picture.width, 6) + ", screen " +
+                          number((top + kLegend) / picture.height, 6) +
+                          " center top maxcols 4 samplen 1.5";
+  draw_lines(script, picture, box, page, axes, others(page.across), key, sheets);
 }
 
 void draw_curves(Script& script,
