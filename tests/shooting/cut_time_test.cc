@@ -175,7 +175,7 @@ double speed_on_se2(const std::vector<double>& p) { return std::hypot(p[0], p[2]
 
 TEST(CutTime, OnSE2IsThatOfTheClosedForm) {
   constexpr int kMomenta = 200;
-  constexpr double kTolerance = 1e-10;  // of the issue; 400 others were good to 4e-13
+  constexpr double kTolerance = 1e-10;  // 400 others were good to 4e-13
   const BoundaryValueProblem at = test::unicycle({0, 0, 0}, {0, 0, 0});
   for (const std::vector<double>& p : drawn(kMomenta, 3, 8)) {
     const double speed = speed_on_se2(p);
