@@ -104,6 +104,10 @@ Json surface_json(const FrontRequest& request, const FrontMesh& mesh) {
     }
     json["umbilics"] = Json::array();
     for (const FrontVertex& point : mesh.umbilics) json["umbilics"].push_back(singular_json(point));
+    json["swallowtails"] = Json::array();
+    for (const FrontVertex& point : mesh.swallowtails) {
+      json["swallowtails"].push_back(singular_json(point));
+    }
   }
   json["searches"] = mesh.searches;
   json["elapsed_seconds"] = mesh.elapsed_seconds;
@@ -129,6 +133,7 @@ Json surfaces_json(const FrontRequest& request,
 
 std::string cusps_text(const FrontMesh& mesh) {
   constexpr int kDigits = 12;
+  constexpr int kDigitsOfDifferences = 6;
   const auto count = [&](const auto& which) {
     return std::count_if(mesh.cusps.begin(), mesh.cusps.end(), which);
   };
@@ -139,12 +144,16 @@ std::string cusps_text(const FrontMesh& mesh) {
                                  closed,
                                  between,
                                  static_cast<long>(mesh.cusps.size()) - closed - between);
-  for (const FrontVertex& point : mesh.umbilics) {
-    text += fmt::format("{} at {}, time {}\n",
-                        point.label,
-                        text_vector(point.q, kDigits),
-                        text_number(point.conjugate_time, kDigits));
-  }
+  const auto tell = [&](const std::vector<FrontVertex>& points, int digits) {
+    for (const FrontVertex& point : points) {
+      text += fmt::format("{} at {}, time {}\n",
+                          point.label,
+                          text_vector(point.q, digits),
+                          text_number(point.conjugate_time, digits));
+    }
+  };
+  tell(mesh.umbilics, kDigits);
+  tell(mesh.swallowtails, kDigitsOfDifferences);
   return text;
 }
 
@@ -282,6 +291,7 @@ std::string draw_surfaces(const FrontRequest& request,
       if (edge.closed) line.push_back(line.front());
     }
     for (const FrontVertex& v : mesh.umbilics) page.points.push_back(seen_part(v));
+    for (const FrontVertex& v : mesh.swallowtails) page.points.push_back(seen_part(v));
   }
   choose_section(request, seen, page);
   return plots::write_surfaces(file, page);

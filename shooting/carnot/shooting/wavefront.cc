@@ -335,6 +335,9 @@ class FrontMaker {
       mesh.umbilics.push_back(
           vertex_at(one.at, one.t, one.hyperbolic ? "hyperbolic umbilic" : "elliptic umbilic"));
     }
+    for (const Swallowtail& one : lines.swallowtails) {
+      mesh.swallowtails.push_back(vertex_at(one.at, one.t, "swallowtail"));
+    }
     return lines.finished;
   }
 

@@ -62,7 +62,7 @@ struct FrontVertex {
   double cut_time = std::numeric_limits<double>::quiet_NaN();
   double conjugate_time = std::numeric_limits<double>::quiet_NaN();
   // front, sphere, caustic or cut; on a seam: maxwell or conjugate; of singular points of a
-  // caustic: cusp, hyperbolic umbilic or elliptic umbilic
+  // caustic: cusp, swallowtail, hyperbolic umbilic or elliptic umbilic
   const char* label = "";
 };
 
@@ -85,6 +85,7 @@ struct FrontMesh {
   std::vector<std::array<int, 2>> segments;  // with two coordinates, instead of triangles
   std::vector<CuspEdge> cusps;               // where they are asked for
   std::vector<FrontVertex> umbilics;         // where two sheets of a caustic meet
+  std::vector<FrontVertex> swallowtails;     // where a cusp line has a cusp; good to 1e-6
   // Whether each edge is in two triangles (each vertex in two segments), and then the Euler
   // characteristic and, with two or three coordinates, the area or the volume inside.
   bool closed = false;

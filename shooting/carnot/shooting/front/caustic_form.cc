@@ -15,6 +15,19 @@ using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
+// The place that is u away from a momentum, in units of its ways.
+UnitMomentum moved(const std::array<UnitMomentum, 2>& ways,
+                   const UnitMomentum& at,
+                   const Vector2d& u) {
+  UnitMomentum place = at;
+  for (int k = 0; k < 2; ++k) {
+    place.c += u[k] * ways[k].c;
+    place.w += u[k] * ways[k].w;
+  }
+  place.c.normalize();
+  return place;
+}
+
 // E beside a momentum, u from it, at any time.
 class FormBeside {
  public:
@@ -28,13 +41,7 @@ class FormBeside {
   }
 
   [[nodiscard]] UnitMomentum moved(const Vector2d& u) const {
-    UnitMomentum place = at_;
-    for (int k = 0; k < 2; ++k) {
-      place.c += u[k] * ways_[k].c;
-      place.w += u[k] * ways_[k].w;
-    }
-    place.c.normalize();
-    return place;
+    return internal::moved(ways_, at_, u);
   }
   [[nodiscard]] MatrixXd tangents(const UnitMomentum& place) const {
     MatrixXd t(dynamics_.dof, 2);
@@ -111,6 +118,64 @@ std::optional<CausticForm> caustic_form(const Dynamics& dynamics,
   const Eigen::VectorXd dp = beside.tangents(at) * form.kernel;
   form.kernel_momenta.assign(dp.data(), dp.data() + dp.size());
   return form;
+}
+
+namespace {
+
+// C of a form for the kernel on the side of another one.
+double cubic_beside(const CausticForm& form, const std::vector<double>& kernel) {
+  double along = 0;
+  for (std::size_t j = 0; j < kernel.size(); ++j) along += form.kernel_momenta[j] * kernel[j];
+  return along > 0 ? form.cubic : -form.cubic;
+}
+
+}  // namespace
+
+double along_kernel(const Dynamics& dynamics,
+                    const std::vector<double>& from,
+                    const UnitMomenta& momenta,
+                    const CausticForm& form) {
+  constexpr double kWide = 3e-4;  // C is good to 1e-10, and the difference to the square of this
+  const auto beside = [&](double part) {
+    const UnitMomentum at = moved(momenta.ways(form.at), form.at, part * form.kernel);
+    const auto other = caustic_form(dynamics, from, momenta, at, form.t);
+    return other ? cubic_beside(*other, form.kernel_momenta) : std::nan("");
+  };
+  return (beside(kWide) - beside(-kWide)) / (2 * kWide);
+}
+
+std::optional<Swallowtail> find_swallowtail(const Dynamics& dynamics,
+                                            const std::vector<double>& from,
+                                            const UnitMomenta& momenta,
+                                            UnitMomentum at,
+                                            const ConjugateTime& conjugate_time) {
+  constexpr int kIterations = 15;
+  constexpr double kWide = 1e-3;  // of differences of D
+  constexpr double kLongest = 0.1;
+  constexpr double kConverged = 1e-6;
+  for (int i = 0; i < kIterations; ++i) {
+    std::vector<double> kernel;  // of the first form, at u = 0
+    const auto equations = [&](const Vector2d& u) -> Vector2d {
+      const UnitMomentum place = moved(momenta.ways(at), at, u);
+      const auto form = caustic_form(dynamics, from, momenta, place, conjugate_time(place));
+      if (!form) return Vector2d::Constant(std::nan(""));
+      if (kernel.empty()) kernel = form->kernel_momenta;
+      return {cubic_beside(*form, kernel), along_kernel(dynamics, from, momenta, *form)};
+    };
+    const Vector2d here = equations(Vector2d::Zero());
+    Matrix2d jacobian;
+    for (int k = 0; k < 2; ++k) {
+      const Vector2d u = kWide * Vector2d::Unit(k);
+      jacobian.col(k) = (equations(u) - equations(-u)) / (2 * kWide);
+    }
+    Vector2d step = small_lu_solve(jacobian, here);
+    if (!step.allFinite()) return std::nullopt;
+    const double longest = step.cwiseAbs().maxCoeff();
+    if (longest > kLongest) step *= kLongest / longest;
+    at = moved(momenta.ways(at), at, -step);
+    if (longest < kConverged) return Swallowtail{at, conjugate_time(at)};
+  }
+  return std::nullopt;
 }
 
 std::optional<Umbilic> find_umbilic(const Dynamics& dynamics,

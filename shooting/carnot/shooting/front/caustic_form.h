@@ -14,11 +14,14 @@
 // in which the derivative of T has no part, for a'T'P'X = 0. Where C(a) = 0 the kernel is tangent
 // to the conjugate momenta: the caustic has a cusp (A3). Where E = 0 there are two kernels, an
 // umbilic: hyperbolic (D4+) where C has one real line of zeros, elliptic (D4-) where it has three.
-// These are three equations for (u, t), solved by Newton's method. Source: Arnold, Gusein-Zade &
-// Varchenko, Singularities of Differentiable Maps I (1985), part III.
+// These are three equations for (u, t), solved by Newton's method. Where the derivative D of C(a)
+// along the kernel vanishes, too, the kernel is tangent to the cusp line, which has a cusp itself:
+// a swallowtail (A4). D does not depend on the sign of a. Source: Arnold, Gusein-Zade & Varchenko,
+// Singularities of Differentiable Maps I (1985), part III.
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -41,6 +44,28 @@ std::optional<CausticForm> caustic_form(const Dynamics& dynamics,
                                         const UnitMomenta& momenta,
                                         const UnitMomentum& at,
                                         double t);
+
+// D at a momentum of a cusp line. NaN where a flow fails. Good to 1e-6.
+double along_kernel(const Dynamics& dynamics,
+                    const std::vector<double>& from,
+                    const UnitMomenta& momenta,
+                    const CausticForm& form);
+
+using ConjugateTime = std::function<double(const UnitMomentum&)>;
+
+struct Swallowtail {
+  UnitMomentum at;
+  double t = 0;
+};
+
+// From a momentum of a cusp line near it: Newton's method on C = 0 and D = 0 along the conjugate
+// momenta. Good to 1e-6, since D comes from differences of differences. Nothing where it does not
+// converge.
+std::optional<Swallowtail> find_swallowtail(const Dynamics& dynamics,
+                                            const std::vector<double>& from,
+                                            const UnitMomenta& momenta,
+                                            UnitMomentum at,
+                                            const ConjugateTime& conjugate_time);
 
 struct Umbilic {
   UnitMomentum at;

@@ -33,6 +33,7 @@ class Lines {
     if (!request_.go_on()) return lines;
     find_umbilics(lines.umbilics);
     find_cusps(lines.cusps);
+    for (const CuspLine& line : lines.cusps) find_swallowtails(line, lines.swallowtails);
     lead_to_umbilics(lines.umbilics, lines.cusps);
     lines.finished = request_.go_on();
     return lines;
@@ -133,6 +134,34 @@ class Lines {
       next[met[1]].push_back(met[0]);
     }
     chain(points, next, cusps);
+  }
+
+  // Where D changes its sign between two points of the line.
+  void find_swallowtails(const CuspLine& line, std::vector<Swallowtail>& swallowtails) const {
+    constexpr double kAway = 2;  // distances of the two points
+    const int count = static_cast<int>(line.points.size());
+    std::vector<double> along(count);
+    parallel_for(count, thread_count(request_.threads), [&](int i) {
+      if (!request_.go_on()) return;
+      const auto form = form_at(line.points[i].at, line.points[i].t);
+      along[i] = form ? along_kernel(request_.dynamics, request_.from, request_.momenta, *form)
+                      : std::nan("");
+    });
+    for (int i = 0; i + (line.closed ? 0 : 1) < count && request_.go_on(); ++i) {
+      const int next = (i + 1) % count;
+      if (!(along[i] * along[next] < 0)) continue;
+      const UnitMomentum& a = line.points[i].at;
+      const UnitMomentum& b = line.points[next].at;
+      const double part = along[i] / (along[i] - along[next]);
+      const auto found = find_swallowtail(request_.dynamics,
+                                          request_.from,
+                                          request_.momenta,
+                                          between(a, b, part),
+                                          request_.conjugate_time);
+      if (!found || !(found->t <= request_.length)) continue;
+      const double gap = distance_of(a, b);
+      if (distance_of(found->at, a) <= kAway * gap) swallowtails.push_back(*found);
+    }
   }
 
   // Lines from ends first, then those that are closed.

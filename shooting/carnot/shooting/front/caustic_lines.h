@@ -5,7 +5,8 @@
 // Where it changes its sign the edge meets a cusp line, which is located there, and triangles tell
 // which of these points follow each other. Close to an umbilic kernels turn within a triangle;
 // lines end there, and may be broken (cusp_ends.h). Umbilics are looked for from each vertex at
-// which E is nearer to zero than at its neighbours.
+// which E is nearer to zero than at its neighbours, and swallowtails where D changes its sign along
+// a line.
 #pragma once
 
 #include <functional>
@@ -20,6 +21,7 @@ struct CausticLines {
   bool finished = false;  // false: stopped
   std::vector<CuspLine> cusps;
   std::vector<Umbilic> umbilics;
+  std::vector<Swallowtail> swallowtails;
 };
 
 struct CausticRequest {
@@ -28,7 +30,7 @@ struct CausticRequest {
   const UnitMomenta& momenta;
   const Surface& surface;
   const std::vector<double>& times;  // conjugate times of its vertices
-  std::function<double(const UnitMomentum&)> conjugate_time;
+  ConjugateTime conjugate_time;
   double length = 0;  // what is conjugate later is left out
   int threads = 0;
   std::function<bool()> go_on;

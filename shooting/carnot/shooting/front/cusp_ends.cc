@@ -5,17 +5,18 @@
 #include <cstddef>
 
 namespace carnot::internal {
-namespace {
 
-double distance(const UnitMomentum& a, const UnitMomentum& b) {
+double distance_of(const UnitMomentum& a, const UnitMomentum& b) {
   return std::hypot((a.c - b.c).norm(), (a.w - b.w) / (1 + std::abs(a.w)));
 }
+
+namespace {
 
 // The largest of the distances between neighbours.
 double largest_gap(const CuspLine& line) {
   double largest = 0;
   for (std::size_t i = 1; i < line.points.size(); ++i) {
-    largest = std::max(largest, distance(line.points[i - 1].at, line.points[i].at));
+    largest = std::max(largest, distance_of(line.points[i - 1].at, line.points[i].at));
   }
   return largest;
 }
@@ -35,8 +36,8 @@ std::vector<End> ends_near(const Umbilic& umbilic, const std::vector<CuspLine>& 
     const CuspLine& line = lines[i];
     if (line.closed || line.points.empty()) continue;
     const double reach = kReach * largest_gap(line);
-    const double from_first = distance(line.points.front().at, umbilic.at);
-    const double from_last = distance(line.points.back().at, umbilic.at);
+    const double from_first = distance_of(line.points.front().at, umbilic.at);
+    const double from_last = distance_of(line.points.back().at, umbilic.at);
     if (line.first_umbilic < 0 && from_first <= reach) ends.push_back({i, true, from_first});
     if (line.last_umbilic < 0 && from_last <= reach) ends.push_back({i, false, from_last});
   }
@@ -58,7 +59,7 @@ void attach(const Umbilic& umbilic, int number, bool first, CuspLine& line) {
 
 // The points of a piece, its far end first.
 std::vector<CausticPoint> towards(const Umbilic& umbilic, std::vector<CausticPoint> points) {
-  if (distance(points.front().at, umbilic.at) < distance(points.back().at, umbilic.at)) {
+  if (distance_of(points.front().at, umbilic.at) < distance_of(points.back().at, umbilic.at)) {
     std::reverse(points.begin(), points.end());
   }
   return points;

@@ -25,6 +25,9 @@ struct CuspLine {
   int last_umbilic = -1;
 };
 
+// Between two momenta, of c and w.
+double distance_of(const UnitMomentum& a, const UnitMomentum& b);
+
 // Leads the open lines of one sheet to the umbilics that they stop short of. A hyperbolic umbilic
 // becomes the end of the longest line that stops near it, and pieces between the two become a part
 // of that line; an elliptic umbilic becomes the end of the three nearest lines. Near is what is not
