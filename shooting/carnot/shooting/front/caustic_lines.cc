@@ -138,7 +138,8 @@ class Lines {
 
   // Where D changes its sign between two points of the line.
   void find_swallowtails(const CuspLine& line, std::vector<Swallowtail>& swallowtails) const {
-    constexpr double kAway = 2;  // distances of the two points
+    constexpr double kAway = 2;     // distances of the two points
+    constexpr double kSame = 1e-4;  // found by another piece of a line
     const int count = static_cast<int>(line.points.size());
     std::vector<double> along(count);
     parallel_for(count, thread_count(request_.threads), [&](int i) {
@@ -159,8 +160,12 @@ class Lines {
                                           between(a, b, part),
                                           request_.conjugate_time);
       if (!found || !(found->t <= request_.length)) continue;
-      const double gap = distance_of(a, b);
-      if (distance_of(found->at, a) <= kAway * gap) swallowtails.push_back(*found);
+      if (!(distance_of(found->at, a) <= kAway * distance_of(a, b))) continue;
+      const bool known =
+          std::any_of(swallowtails.begin(), swallowtails.end(), [&](const Swallowtail& other) {
+            return distance_of(found->at, other.at) <= kSame;
+          });
+      if (!known) swallowtails.push_back(*found);
     }
   }
 
