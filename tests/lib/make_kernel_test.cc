@@ -16,20 +16,14 @@
 #include "carnot/scenes/unicycle.h"
 #include "carnot/scenes/vehicle.h"
 #include "carnot/step/gauss.h"
+#include "testing/largest_change.h"
 
 namespace carnot::make_kernel_test {
 namespace {
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
+using test::largest_change;
 
-double distance(const std::vector<double>& a, const std::vector<double>& b) {
-  double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const double change = std::abs(a[i] - b[i]);
-    if (!(change <= largest)) largest = change;
-  }
-  return largest;
-}
+constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 // Two runs that differ in the order of their sums only.
 struct Pair {
@@ -81,7 +75,7 @@ TEST_P(MakeKernel, FlowsAgree) {
   std::vector<double> b = pair_.start;
   ASSERT_TRUE(pair_.compiled.flow(plan_, a).completed());
   ASSERT_TRUE(pair_.direct.flow(plan_, b).completed());
-  EXPECT_LE(distance(a, b), kRoundOff);
+  EXPECT_LE(largest_change(a, b), kRoundOff);
 }
 
 TEST_P(MakeKernel, TangentsAgree) {
@@ -94,7 +88,7 @@ TEST_P(MakeKernel, TangentsAgree) {
   ASSERT_TRUE(pair_.direct.tangent_flow(plan_, b, mb).completed());
   double largest = 1;
   for (const double x : mb) largest = std::max(largest, std::abs(x));
-  EXPECT_LE(distance(ma, mb), kRoundOff * largest);
+  EXPECT_LE(largest_change(ma, mb), kRoundOff * largest);
 }
 
 TEST_P(MakeKernel, MonitorsAgree) {
@@ -115,8 +109,8 @@ TEST_P(MakeKernel, MonitorsAgree) {
   for (std::size_t i = 0; i < 5; ++i) {
     ASSERT_EQ(one.trajectory.lambda[i].size(),
               static_cast<std::size_t>(pair_.compiled.multipliers));
-    EXPECT_LE(distance(one.trajectory.q[i], other.trajectory.q[i]), kRoundOff);
-    EXPECT_LE(distance(one.trajectory.lambda[i], other.trajectory.lambda[i]), 10 * kRoundOff);
+    EXPECT_LE(largest_change(one.trajectory.q[i], other.trajectory.q[i]), kRoundOff);
+    EXPECT_LE(largest_change(one.trajectory.lambda[i], other.trajectory.lambda[i]), 10 * kRoundOff);
   }
 }
 
@@ -147,7 +141,7 @@ TEST_P(MakeKernel, AutomaticFlowsReachTheTolerance) {
   ASSERT_TRUE(pair_.compiled.has_automatic_flow());
   const AutomaticFlow run = pair_.compiled.automatic_flow(0.1, pair_.duration, kTolerance, z);
   if (run.reached) {  // else it says so, and z is the start
-    EXPECT_LE(distance(z, exact), kTolerance);
+    EXPECT_LE(largest_change(z, exact), kTolerance);
   } else {
     EXPECT_EQ(z, pair_.start);
   }
@@ -194,7 +188,7 @@ TEST(MakeKernelTangent, TakesTurnsOffAngles) {
   ASSERT_TRUE(dynamics.tangent_flow(plan, at_near, m_near).completed());
   double largest = 1;
   for (const double x : m_near) largest = std::max(largest, std::abs(x));
-  EXPECT_LE(distance(m_far, m_near), kRoundOff * largest);
+  EXPECT_LE(largest_change(m_far, m_near), kRoundOff * largest);
   for (int j = 0; j < 8; ++j) {
     EXPECT_NEAR(at_far[j] - far[j], at_near[j] - near[j], kRoundOff + kEps * std::abs(far[j]));
   }
@@ -219,7 +213,7 @@ TEST(MakeKernelBatch, AdvancesManyAsOne) {
     const StepPlan plan = StepPlan::equal(0, pair.duration, 64);
     ASSERT_TRUE(pair.direct.flow(plan, one).completed());
     const std::vector<double> of_batch(z.begin() + 8 * i, z.begin() + 8 * i + 8);
-    EXPECT_LE(distance(of_batch, one), 1e4 * kTolerance);  // local errors add up and grow
+    EXPECT_LE(largest_change(of_batch, one), 1e4 * kTolerance);  // local errors add up and grow
   }
 }
 

@@ -19,11 +19,13 @@
 #include "carnot/tableau/make_tableau.h"
 #include "carnot/tableau/order_conditions.h"
 #include "carnot/tableau/tableau_laws.h"
+#include "testing/largest_change.h"
 
 namespace carnot::own_method_test {
 namespace {
 
 using scenes::Vehicle;
+using test::largest_change;
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -84,15 +86,6 @@ std::vector<double> end_of(const Dynamics& dynamics, double duration, long steps
   return z;
 }
 
-double distance(const std::vector<double>& a, const std::vector<double>& b) {
-  double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const double change = std::abs(a[i] - b[i]);
-    if (!(change <= largest)) largest = change;
-  }
-  return largest;
-}
-
 class PrintedMethodTest : public ::testing::TestWithParam<Method> {
  protected:
   const Method& method_ = GetParam();
@@ -127,7 +120,7 @@ TEST_P(PrintedMethodTest, StepsAsTheMethodDoes) {
   constexpr double kTolerance = 1e3 * kEps;  // twenty steps, with stages solved to round-off
   const std::vector<double> own = end_of(make_dynamics(Vehicle{}, own_), 2, 20);
   const std::vector<double> known = end_of(make_dynamics(Vehicle{}, method_.name), 2, 20);
-  EXPECT_LE(distance(own, known), kTolerance);
+  EXPECT_LE(largest_change(own, known), kTolerance);
 }
 
 TEST(OwnMethod, OfThePackStepsSideBySide) {
@@ -140,7 +133,7 @@ TEST(OwnMethod, OfThePackStepsSideBySide) {
   const AutomaticFlow result = dynamics.automatic_flow(0, 2, 1e-10, z);
   EXPECT_TRUE(result.report.completed());
   (void)make_dynamics(Vehicle{}).automatic_flow(0, 2, 1e-10, known);
-  EXPECT_LE(distance(z, known), 1e-12);
+  EXPECT_LE(largest_change(z, known), 1e-12);
 }
 
 // The law itself, of methods that the library does not have.
@@ -188,7 +181,7 @@ TEST(OwnMethod, MayHaveNegativeWeights) {
   for (const long steps : {5, 20}) {
     const std::vector<double> expected = end_of(make_dynamics(Vehicle{}, in_time), 4, steps);
     const std::vector<double> found = end_of(make_dynamics(Vehicle{}, backwards), 4, steps);
-    EXPECT_LE(distance(found, expected), 1e4 * kEps) << steps;
+    EXPECT_LE(largest_change(found, expected), 1e4 * kEps) << steps;
   }
   std::vector<double> z = kStart;
   const Dynamics dynamics = make_dynamics(Vehicle{}, backwards);
@@ -207,7 +200,7 @@ TEST(OwnMethod, MayHaveStagesWithoutWeight) {
   EXPECT_FALSE(is_symplectic(own.tableau));
   const std::vector<double> found = end_of(make_dynamics(Vehicle{}, own), 2, 20);
   const std::vector<double> expected = end_of(make_dynamics(Vehicle{}, "gauss4"), 2, 20);
-  EXPECT_LE(distance(found, expected), 1e3 * kEps);
+  EXPECT_LE(largest_change(found, expected), 1e3 * kEps);
 }
 
 // The symplectic Euler rule: q is implicit and p explicit.
@@ -227,7 +220,8 @@ TEST(OwnMethod, MayBePartitioned) {
 TEST(OwnMethod, IsTakenByEveryMaker) {
   const OwnMethod own = own_method(lobatto_3c());
   const std::vector<double> expected = end_of(make_dynamics(Vehicle{}, own), 2, 20);
-  EXPECT_LE(distance(end_of(make_inlined_dynamics(Vehicle{}, own), 2, 20), expected), 1e3 * kEps);
+  EXPECT_LE(largest_change(end_of(make_inlined_dynamics(Vehicle{}, own), 2, 20), expected),
+            1e3 * kEps);
 
   const TextScene skate = scene_from_text(
       "coordinates x, y, theta [angle]\n0 = x' sin(theta) - y' cos(theta)\n"

@@ -10,7 +10,7 @@
 
 namespace carnot {
 
-// Up to here all trees are looked at. There are 1,842 of up to 10 vertices, and 12,157 in two
+// Up to here all trees are looked at. There are 1,205 of up to 10 vertices, and 12,157 in two
 // colours of up to 8.
 inline constexpr int kMostTreeOrder = 10;
 inline constexpr int kMostColouredOrder = 8;

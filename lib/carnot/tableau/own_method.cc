@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "carnot/tableau/collocation.h"
 #include "carnot/tableau/method_order.h"
