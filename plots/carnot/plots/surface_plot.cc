@@ -74,21 +74,48 @@ std::vector<Valued> drawn_part(const SurfacePage& page,
   return behind;
 }
 
-// As "[a:b]", of what is drawn.
-std::string range_of_values(const SurfacePage& page) {
+// Of what is drawn.
+Axis axis_of_values(const SurfacePage& page) {
   Interval range;
   for (const SurfaceSheet& sheet : page.sheets) {
     for (const auto& t : sheet.triangles) {
       for (const Valued& corner : drawn_part(page, sheet, t)) range.include(corner[3]);
     }
   }
-  const Axis axis(range);
-  return "[" + number(axis.lower, 6) + ":" + number(axis.upper, 6) + "]";
+  return Axis(range);
+}
+
+// A patch has one colour. So a triangle whose values differ by more than `step` is cut in two in
+// the middle of the edge on which they differ most, and so on: long thin ones would look like
+// spikes.
+template <class Put>
+void put_by_value(const std::array<Valued, 3>& t, double step, const Put& put) {
+  const auto difference = [&](int k) { return std::abs(t[k][3] - t[(k + 1) % 3][3]); };
+  int k = 0;
+  for (const int other : {1, 2}) {
+    if (difference(other) > difference(k)) k = other;
+  }
+  if (!(difference(k) > step)) {
+    put(t);
+    return;
+  }
+  const Valued& a = t[k];
+  const Valued& b = t[(k + 1) % 3];
+  const Valued& c = t[(k + 2) % 3];
+  Valued middle{};
+  for (int j = 0; j < 4; ++j) middle[j] = 0.5 * (a[j] + b[j]);
+  put_by_value({a, middle, c}, step, put);
+  put_by_value({middle, b, c}, step, put);
 }
 
 // A triangle is a patch of two lines, of which one has become a point. Pieces with four corners are
 // two of them: the light falls on other patches as if they were turned round.
-void put_pieces(Script& script, const SurfacePage& page, const std::array<Axis, 3>& axes) {
+void put_pieces(Script& script,
+                const SurfacePage& page,
+                const std::array<Axis, 3>& axes,
+                const Axis& values) {
+  constexpr double kColors = 40;  // that are told apart
+  const double step = (values.upper - values.lower) / kColors;
   const auto put = [&](const Valued& corner) {
     for (int k = 0; k < 3; ++k) script << number(axes[k].at(corner[k]), 7) << " ";
     script << number(corner[3], 5) << "\n";
@@ -98,12 +125,15 @@ void put_pieces(Script& script, const SurfacePage& page, const std::array<Axis, 
     for (const auto& t : sheet.triangles) {
       const std::vector<Valued> piece = drawn_part(page, sheet, t);
       for (std::size_t k = 2; k < piece.size(); ++k) {
-        put(piece[0]);
-        put(piece[k - 1]);
-        script << "\n";
-        put(piece[k]);
-        put(piece[k]);
-        script << "\n\n";
+        put_by_value(
+            {piece[0], piece[k - 1], piece[k]}, step, [&](const std::array<Valued, 3>& patch) {
+              put(patch[0]);
+              put(patch[1]);
+              script << "\n";
+              put(patch[2]);
+              put(patch[2]);
+              script << "\n\n";
+            });
       }
     }
   }
@@ -113,18 +143,19 @@ void put_pieces(Script& script, const SurfacePage& page, const std::array<Axis, 
 void draw_space(Script& script,
                 const SurfacePage& page,
                 const std::array<Axis, 3>& axes,
-                const std::string& values) {
+                const Axis& values) {
   constexpr std::array kLetters{"x", "y", "z"};
   constexpr double kSides = 420;  // a side of the box, seen from aside, on the canvas
   constexpr double kTics = 80;
-  put_pieces(script, page, axes);
+  put_pieces(script, page, axes, values);
   script << "set lmargin -1\nset rmargin -1\nset bmargin -1\nset tmargin -1\n"
          << "set origin 0, 0\nset size 0.53, 0.95\nset border 127 lw 0.5 lc rgb '#9a9a9a'\n"
          << "set view 64, 40, 0.98, 1.2\nset xyplane 0\n"
          << "set pm3d depthorder noborder\n"
          << "set pm3d lighting primary 0.55 specular 0.25 spec2 0.1\n"
          << "set palette defined (0 '#30123b', 0.2 '#2f6fd6', 0.45 '#1fb8a8', 0.65 '#a2d84a', "
-         << "0.85 '#f0a22e', 1 '#b5331f')\nset cbrange " << values << "\n"
+         << "0.85 '#f0a22e', 1 '#b5331f')\nset cbrange [" << number(values.lower, 6) << ":"
+         << number(values.upper, 6) << "]\n"
          << "set colorbox user origin 0.53, 0.3 size 0.011, 0.36\nset cblabel "
          << quoted_markup(page.color) << " tc rgb '#000000'\nset cbtics tc rgb '#000000'\n"
          << "unset key\n";
@@ -277,7 +308,7 @@ std::string write_surfaces(const std::string& file, const SurfacePage& page) {
   picture.frame_seconds = std::max(kShortest, kLoopSeconds / static_cast<double>(sheets));
   Script script;
   const std::array<Axis, 3> axes = axes_of(page);
-  const std::string values = page.plane ? "" : range_of_values(page);
+  const Axis values = page.plane ? Axis(Interval{}) : axis_of_values(page);
   for (std::size_t shown = page.growing ? 1 : sheets; shown <= sheets; ++shown) {
     SurfacePage frame = page;
     frame.sheets.resize(shown);
