@@ -94,12 +94,32 @@ SmallMatrix moving_momenta(const Dynamics& dynamics, const std::vector<double>& 
   return right_singular(projector.leftCols(n)).vectors.leftCols(n - dynamics.forced);
 }
 
+// |X|^2 + |P|^2
+double size_of(const Node& node) { return node.x.squaredNorm() + node.p.squaredNorm(); }
+
+// Makes the basis orthonormal, by Gram's and Schmidt's method, twice for round-off.
+void orthonormalize(Node& node) {
+  for (Eigen::Index k = 0; k < node.x.cols(); ++k) {
+    for (int twice = 0; twice < 2; ++twice) {
+      for (Eigen::Index j = 0; j < k; ++j) {
+        const double inner = node.x.col(j).dot(node.x.col(k)) + node.p.col(j).dot(node.p.col(k));
+        node.x.col(k) -= inner * node.x.col(j);
+        node.p.col(k) -= inner * node.p.col(j);
+      }
+      const double norm = std::sqrt(node.x.col(k).squaredNorm() + node.p.col(k).squaredNorm());
+      node.x.col(k) /= norm;
+      node.p.col(k) /= norm;
+    }
+  }
+}
+
 class Count {
  public:
   Count(const Ray& ray, int order) : dynamics_(ray.dynamics()), left_(order) {
     node_.z = ray.start();
     node_.p = moving_momenta(dynamics_, node_.z);
     node_.x = SmallMatrix::Zero(dynamics_.dof, node_.p.cols());
+    size_ = size_of(node_);
   }
 
   // Goes on to t, or to the time that is looked for: then that is `found`. False where it fails.
@@ -122,6 +142,7 @@ class Count {
     }
     left_ -= passed;
     node_ = std::move(next);
+    renew_basis();
     return true;
   }
 
@@ -131,6 +152,14 @@ class Count {
   std::optional<ConjugatePoint> found;
 
  private:
+  // Beside an unstable extremal, such as an abnormal one, all vectors of the basis turn to where
+  // the flow grows, until round-off hides the others. Signs of F do not depend on the basis.
+  void renew_basis() {
+    constexpr double kGrown = 1e4;  // of the sum of squares
+    if (size_of(node_) < kGrown * size_) return;
+    orthonormalize(node_);
+    size_ = size_of(node_);
+  }
   // The zero of the eigenvalue that has `left_` - 1 negative ones above it, before the node `end`.
   void locate(const Form& before, const Form& after, Node end) {
     constexpr double kNear = 1e-8;  // relative
@@ -167,6 +196,7 @@ class Count {
   const Dynamics& dynamics_;
   int left_;
   Node node_;
+  double size_ = 0;  // when its basis was made
 };
 
 }  // namespace
