@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -14,9 +15,10 @@
 #include "carnot/shooting/cut_time.h"
 #include "carnot/shooting/extremal/abnormal_curve.h"
 #include "carnot/shooting/front/caustic_lines.h"
+#include "carnot/shooting/front/columns.h"
 #include "carnot/shooting/front/cut_values.h"
 #include "carnot/shooting/front/enclosed.h"
-#include "carnot/shooting/front/momentum_bound.h"
+#include "carnot/shooting/front/image_scale.h"
 #include "carnot/shooting/front/ray_ends.h"
 #include "carnot/shooting/front/seam.h"
 #include "carnot/shooting/front/surface.h"
@@ -75,7 +77,7 @@ class FrontMaker {
         options_(options),
         n_(dynamics.dof),
         momenta_(dynamics, from, options.fixed),
-        seen_(options.project),
+        scale_(seen(dynamics.dof, options.project)),
         horizon_(kMargin * options.length),
         cuts_(dynamics,
               from,
@@ -85,14 +87,16 @@ class FrontMaker {
                options.signs,
                options.seed,
                options.threads,
-               options.progress}) {
-    for (int k = 0; seen_.size() < 3 && k < std::min(n_, 3); ++k) seen_.push_back(k);
-  }
+               options.progress}) {}
 
   void run(FrontMesh& mesh) {
     mesh.length = options_.length;
-    if (momenta_.has_line()) bound_ = options_.bound > 0 ? options_.bound : chosen_bound();
-    surface_ = first_surface(momenta_, bound_);
+    const std::vector<Column> columns =
+        momenta_.has_line() ? first_columns() : std::vector<Column>{};
+    surface_ = first_surface(momenta_, columns);
+    for (std::size_t i = 0; i < surface_.vertices.size() && !columns.empty(); ++i) {
+      if (!columns[i % columns.size()].added) seeds_.push_back(static_cast<int>(i));
+    }
     mesh.finished = make_first() && refined() && made_cusps(mesh) && cut_out() && made_times();
     if (mesh.finished) deliver(mesh);
     mesh.searches = cuts_.searches();
@@ -100,6 +104,11 @@ class FrontMaker {
   }
 
  private:
+  // The coordinates that are seen.
+  static std::vector<int> seen(int n, std::vector<int> project) {
+    for (int k = 0; project.size() < 3 && k < std::min(n, 3); ++k) project.push_back(k);
+    return project;
+  }
   [[nodiscard]] bool needs_cuts() const {
     return options_.what == FrontKind::kSphere || options_.what == FrontKind::kCut;
   }
@@ -116,6 +125,20 @@ class FrontMaker {
   template <class Work>
   void for_all(int first, int last, const Work& work) {
     parallel_for(last - first, thread_count(options_.threads), [&](int k) { work(first + k); });
+  }
+
+  // Sets bound_, too.
+  std::vector<Column> first_columns() {
+    std::vector<Column> columns;
+    if (options_.what == FrontKind::kSphere && options_.bound == 0) {
+      columns = conjugate_columns(
+          {dynamics_, from_, momenta_, options_.length, longest_edge(), options_.threads}, scale_);
+    }
+    if (columns.empty()) {
+      columns = even_columns(momenta_, options_.bound > 0 ? options_.bound : chosen_bound());
+    }
+    for (const Column& column : columns) bound_ = std::max({bound_, column.high, -column.low});
+    return columns;
   }
 
   [[nodiscard]] double chosen_bound() const {
@@ -164,33 +187,11 @@ class FrontMaker {
         if (!z.empty()) std::copy_n(z.begin(), n_, ends_.begin() + static_cast<long>(i) * n_);
       });
     }
-    if (sizes_.empty()) find_sizes();
+    if (!scale_.is_measured()) scale_.measure(ends_, n_);
     for (int i = first; i < last; ++i) {
-      surface_.vertices[i].image.clear();
-      for (std::size_t k = 0; k < seen_.size(); ++k) {
-        surface_.vertices[i].image.push_back(ends_[static_cast<std::size_t>(i) * n_ + seen_[k]] /
-                                             sizes_[k]);
-      }
+      surface_.vertices[i].image = scale_.image(&ends_[static_cast<std::size_t>(i) * n_]);
     }
     return go_on();
-  }
-
-  // How wide the first images are in each coordinate that is seen.
-  void find_sizes() {
-    for (const int j : seen_) {
-      double low = kNone;
-      double high = -kNone;
-      for (std::size_t i = j; i < ends_.size(); i += n_) {
-        if (!std::isfinite(ends_[i])) continue;
-        low = std::min(low, ends_[i]);
-        high = std::max(high, ends_[i]);
-      }
-      sizes_.push_back(high > low ? high - low : 0);
-    }
-    // A surface that is thin in one direction is not to be magnified there.
-    constexpr double kThin = 1e-3;
-    const double largest = *std::max_element(sizes_.begin(), sizes_.end());
-    for (double& size : sizes_) size = std::max({size, kThin * largest, 1e-300});
   }
 
   [[nodiscard]] std::vector<std::vector<double>> momenta_from(int first) const {
@@ -217,13 +218,20 @@ class FrontMaker {
                   [&](const auto& s) { return !is_inside(s[0]) && !is_inside(s[1]); });
   }
 
+  [[nodiscard]] std::vector<int> every_vertex() const {
+    std::vector<int> all(surface_.vertices.size());
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+  }
+
   // Of the mesh as it is, and checked.
   bool find_cuts() {
     const int checked = momenta_.dimension() == 1 ? 4 : 16;
     constexpr int kRounds = 3;
     const std::vector<std::vector<int>> neighbours = surface_.neighbours();
-    if (!cuts_.add(momenta_from(0), neighbours)) return false;
-    for (int round = 0; round < kRounds && cuts_.check(checked, neighbours) > 0; ++round) {
+    const std::vector<int> seeds = seeds_.empty() ? every_vertex() : seeds_;
+    if (!cuts_.add(momenta_from(0), neighbours, seeds)) return false;
+    for (int round = 0; round < kRounds && cuts_.check(checked, neighbours, seeds) > 0; ++round) {
       if (!go_on()) return false;
     }
     return go_on();
@@ -245,12 +253,14 @@ class FrontMaker {
     return make_images(first);
   }
 
+  // Curves cost little, and their kinks are seen.
+  [[nodiscard]] double part_of_curves() const { return momenta_.dimension() == 1 ? 0.25 : 1; }
+  [[nodiscard]] double longest_edge() const { return part_of_curves() * options_.edge; }
+
   bool refined() {
     constexpr double kShortest = 0.125;
-    constexpr double kOfCurves = 0.25;  // they cost little, and kinks are seen
-    const double part = momenta_.dimension() == 1 ? kOfCurves : 1;
-    const double edge = part * options_.edge;
-    Refinement how{edge, part * options_.angle, kShortest * edge, options_.most, {}};
+    const double edge = longest_edge();
+    Refinement how{edge, part_of_curves() * options_.angle, kShortest * edge, options_.most, {}};
     how.make = [this](int first, const std::vector<Between>& parents) {
       if (!make(first, parents)) return false;
       leave_inside();
@@ -288,10 +298,11 @@ class FrontMaker {
     if (options_.what == FrontKind::kFront) return true;
     const int count = static_cast<int>(surface_.vertices.size());
     std::vector<bool> inside(count);
+    // What was left out before borders on the outside only.
+    const std::vector<bool> border = surface_.on_border();
     for (int i = 0; i < count; ++i) {
       inside[i] = is_inside(i);
-      const bool at_bound = momenta_.has_line() && std::abs(surface_.vertices[i].place.w) >= bound_;
-      open_at_bound_ = open_at_bound_ || (inside[i] && at_bound);
+      open_at_bound_ = open_at_bound_ || (inside[i] && border[i]);
     }
     clip(
         inside,
@@ -467,14 +478,14 @@ class FrontMaker {
   const FrontOptions& options_;
   int n_;
   UnitMomenta momenta_;
-  std::vector<int> seen_;
+  ImageScale scale_;
   double horizon_;
   CutValues cuts_;
   Surface surface_;
+  std::vector<int> seeds_;  // vertices of the first mesh that may be searched; empty: all
   double bound_ = 0;
-  std::vector<double> ends_;   // q of each vertex
-  std::vector<double> times_;  // of each vertex, of a caustic or a cut locus
-  std::vector<double> sizes_;
+  std::vector<double> ends_;                        // q of each vertex
+  std::vector<double> times_;                       // of each vertex, of a caustic or a cut locus
   int border_ = -1;                                 // the first vertex of the border
   int seam_end_ = std::numeric_limits<int>::max();  // vertices from here on are inside
   bool open_at_bound_ = false;                      // some extremals are still inside there

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "carnot/numerics/parallel.h"
@@ -89,6 +88,18 @@ double CutValues::turned(const std::vector<double>& a, const std::vector<double>
   return (one.c - other.c).norm() + (along > 0 ? 2 * std::abs(one.w - other.w) / along : 0);
 }
 
+// Near the edge of the cut locus the equations of a meeting are badly conditioned. Both rays are
+// neighbours there, and nearly conjugate. Beside an abnormal extremal neighbours may meet long
+// before they are conjugate, and nothing is wrong with that.
+bool CutValues::is_at_edge(const std::vector<double>& p,
+                           const std::vector<double>& partner,
+                           double t,
+                           double conjugate) const {
+  constexpr double kEdge = 0.1;
+  constexpr double kConjugate = 1.1;
+  return turned(p, partner) < kEdge && conjugate < kConjugate * t;
+}
+
 Rival CutValues::moved(const Way& from, const Way& to, const Rival& rival) const {
   Rival guess = rival;
   if (std::isfinite(from.conjugate) && std::isfinite(to.conjugate)) {
@@ -126,9 +137,7 @@ bool CutValues::follow(const Way& from, const Way& to, int halvings, Rival& riva
 bool CutValues::meets(const Ray& ray, int j, int halvings, CutValue& value) const {
   const CutValue& neighbour = values_[j];
   if (!neighbour.known || neighbour.at_conjugate || std::isinf(neighbour.t)) return false;
-  // Near the edge of the cut locus the equations of a meeting are badly conditioned.
-  constexpr double kEdge = 0.1;
-  if (turned(momenta_[j], neighbour.partner.p) < kEdge) return false;
+  if (is_at_edge(momenta_[j], neighbour.partner.p, neighbour.t, neighbour.conjugate)) return false;
   Rival rival = neighbour.partner;
   rival.t = neighbour.t;
   const Way from{momenta_[j], neighbour.conjugate};
@@ -137,7 +146,7 @@ bool CutValues::meets(const Ray& ray, int j, int halvings, CutValue& value) cons
   if (rival.t > (1 + kSameTime) * value.conjugate || !(rival.t < (1 - kSameTime) * value.t)) {
     return false;
   }
-  if (turned(ray.p(), rival.p) < kEdge) return false;
+  if (is_at_edge(ray.p(), rival.p, rival.t, value.conjugate)) return false;
   if (same_path(ray, rival, steps)) return false;
   value.known = true;
   value.t = rival.t;
@@ -150,7 +159,8 @@ CutValue CutValues::led_to(const std::vector<double>& p,
                            double conjugate,
                            const std::vector<int>& neighbours) const {
   constexpr int kHalvings = 4;
-  constexpr double kNeighbours = 0.9;   // what is turned by less may be met as a neighbour
+  constexpr double kNeighbours = 0.9;   // what is turned by less may be met as a neighbour,
+  constexpr double kBefore = 1.3;       // where that is so long before the conjugate time
   constexpr double kSamePartner = 0.3;  // of |p|: its neighbours lead to the same one
   CutValue value;
   value.t = kInfinity;
@@ -163,7 +173,8 @@ CutValue CutValues::led_to(const std::vector<double>& p,
     const CutValue& neighbour = values_[j];
     if (!neighbour.known) continue;
     beside_conjugate = beside_conjugate || neighbour.at_conjugate;
-    if (!neighbour.partner.p.empty() && turned(momenta_[j], neighbour.partner.p) < kNeighbours) {
+    if (!neighbour.partner.p.empty() && neighbour.conjugate < kBefore * neighbour.t &&
+        turned(momenta_[j], neighbour.partner.p) < kNeighbours) {
       near_edge = apart(neighbour.partner.p, momenta_[j]);
     }
     beside_none = beside_none || std::isinf(neighbour.t);
@@ -231,16 +242,15 @@ CutValue CutValues::beside(const std::vector<double>& p, int i) {
 }
 
 bool CutValues::add(const std::vector<std::vector<double>>& momenta,
-                    const std::vector<std::vector<int>>& neighbours) {
+                    const std::vector<std::vector<int>>& neighbours,
+                    const std::vector<int>& seeds) {
   const int count = static_cast<int>(momenta.size());
   momenta_ = momenta;
   values_.assign(momenta.size(), {});
   parallel_for(count, thread_count(options_.threads), [&](int i) {
     if (go_on()) values_[i].conjugate = conjugate_time(ray(i), options_.horizon);
   });
-  std::vector<int> all(count);
-  std::iota(all.begin(), all.end(), 0);
-  return search_some(all) && spread(neighbours) && relax(neighbours);
+  return search_some(seeds) && spread(neighbours) && relax(neighbours);
 }
 
 // A few of these, spread evenly.
@@ -325,13 +335,15 @@ bool CutValues::relax(const std::vector<std::vector<int>>& neighbours) {
   return true;
 }
 
-int CutValues::check(int count, const std::vector<std::vector<int>>& neighbours) {
-  const int all = static_cast<int>(values_.size());
+int CutValues::check(int count,
+                     const std::vector<std::vector<int>>& neighbours,
+                     const std::vector<int>& of) {
+  const auto all = static_cast<int>(of.size());
   count = std::min(count, all);
   std::vector<CutValue> found(count);
   std::vector<int> which(count);
   parallel_for(count, thread_count(options_.threads), [&](int k) {
-    which[k] = static_cast<int>(std::fmod(0.25 + 0.7548776662466927 * k, 1.0) * all);
+    which[k] = of[static_cast<int>(std::fmod(0.25 + 0.7548776662466927 * k, 1.0) * all)];
     if (go_on()) found[k] = searched(momenta_[which[k]]);
   });
   int lower = 0;

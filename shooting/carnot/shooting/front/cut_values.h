@@ -54,9 +54,10 @@ class CutValues {
   [[nodiscard]] bool stopped() const { return stopped_; }
 
   // Adds rays with these momenta, whose neighbours are given (also among each other), and finds
-  // their cut times. False when stopped.
+  // their cut times. Some of the `seeds` are searched first. False when stopped.
   bool add(const std::vector<std::vector<double>>& momenta,
-           const std::vector<std::vector<int>>& neighbours);
+           const std::vector<std::vector<int>>& neighbours,
+           const std::vector<int>& seeds);
   // Adds rays one of whose two neighbours, known ones, leads to each.
   bool add_between(const std::vector<std::vector<double>>& momenta,
                    const std::vector<std::pair<int, int>>& parents);
@@ -64,8 +65,8 @@ class CutValues {
   void add_partners(const std::vector<int>& of);
   // The value of a ray beside number i; nothing is added.
   [[nodiscard]] CutValue beside(const std::vector<double>& p, int i);
-  // Searches so many rays once more, spread evenly, and takes what is less. How many were.
-  int check(int count, const std::vector<std::vector<int>>& neighbours);
+  // Searches so many of these rays once more, spread evenly, and takes what is less. How many were.
+  int check(int count, const std::vector<std::vector<int>>& neighbours, const std::vector<int>& of);
 
  private:
   [[nodiscard]] Ray ray(int i) const { return {dynamics_, from_, momenta_[i]}; }
@@ -78,6 +79,11 @@ class CutValues {
                                             double conjugate,
                                             const std::vector<int>& neighbours);
   [[nodiscard]] double turned(const std::vector<double>& a, const std::vector<double>& b) const;
+  // Whether a ray and its partner, which meet at t, are neighbours.
+  [[nodiscard]] bool is_at_edge(const std::vector<double>& p,
+                                const std::vector<double>& partner,
+                                double t,
+                                double conjugate) const;
   // A ray between two others, and its conjugate time.
   struct Way {
     std::vector<double> p;

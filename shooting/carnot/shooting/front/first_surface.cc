@@ -1,40 +1,23 @@
 // The meshes that a refinement begins with.
-#include <cmath>
 #include <map>
-#include <numbers>
 
 #include "carnot/shooting/front/surface.h"
 
 namespace carnot::internal {
 namespace {
 
-constexpr int kAround = 48;  // vertices
-constexpr int kAlong = 33;
-
-// In general position: no vertex is an abnormal extremal, whose neighbours have other cut times.
-UnitMomentum on_circle(int j, int around) {
-  const double phi = 2 * std::numbers::pi * (j + 0.37) / around;
-  return {{std::cos(phi), std::sin(phi), 0}, 0};
-}
-
-// From -bound to bound.
-double along(int i, double bound) { return bound * (2.0 * i / (kAlong - 1) - 1); }
-
-Surface cylinder(double bound) {
+Surface cylinder(const std::vector<Column>& columns) {
   Surface surface;
-  for (int i = 0; i < kAlong; ++i) {
-    for (int j = 0; j < kAround; ++j) {
-      UnitMomentum place = on_circle(j, kAround);
-      place.w = along(i, bound);
-      surface.vertices.push_back({place, {}});
-    }
+  const auto around = static_cast<int>(columns.size());
+  for (int i = 0; i < kPlacesOnColumn; ++i) {
+    for (const Column& column : columns) surface.vertices.push_back({place_on(column, i), {}});
   }
-  for (int i = 0; i + 1 < kAlong; ++i) {
-    for (int j = 0; j < kAround; ++j) {
-      const int a = i * kAround + j;
-      const int b = i * kAround + (j + 1) % kAround;
-      surface.triangles.push_back({a, b, b + kAround});
-      surface.triangles.push_back({a, b + kAround, a + kAround});
+  for (int i = 0; i + 1 < kPlacesOnColumn; ++i) {
+    for (int j = 0; j < around; ++j) {
+      const int a = i * around + j;
+      const int b = i * around + (j + 1) % around;
+      surface.triangles.push_back({a, b, b + around});
+      surface.triangles.push_back({a, b + around, a + around});
     }
   }
   return surface;
@@ -77,21 +60,22 @@ Surface sphere() {
   return surface;
 }
 
-Surface circle() {
+Surface circle(const UnitMomenta& momenta) {
   Surface surface;
-  for (int j = 0; j < kAround; ++j) {
-    surface.vertices.push_back({on_circle(j, kAround), {}});
-    surface.segments.push_back({j, (j + 1) % kAround});
+  for (const Column& column : even_columns(momenta, 0)) {
+    surface.vertices.push_back({{column.c, 0}, {}});
   }
+  const auto around = static_cast<int>(surface.vertices.size());
+  for (int j = 0; j < around; ++j) surface.segments.push_back({j, (j + 1) % around});
   return surface;
 }
 
-Surface two_lines(double bound) {
+Surface lines(const std::vector<Column>& columns) {
   Surface surface;
-  for (const double side : {1.0, -1.0}) {
+  for (const Column& column : columns) {
     const int first = static_cast<int>(surface.vertices.size());
-    for (int i = 0; i < kAlong; ++i) {
-      surface.vertices.push_back({{side * Eigen::Vector3d::UnitX(), along(i, bound)}, {}});
+    for (int i = 0; i < kPlacesOnColumn; ++i) {
+      surface.vertices.push_back({place_on(column, i), {}});
       if (i > 0) surface.segments.push_back({first + i - 1, first + i});
     }
   }
@@ -100,9 +84,9 @@ Surface two_lines(double bound) {
 
 }  // namespace
 
-Surface first_surface(const UnitMomenta& momenta, double bound) {
-  if (momenta.dimension() == 2) return momenta.has_line() ? cylinder(bound) : sphere();
-  return momenta.has_line() ? two_lines(bound) : circle();
+Surface first_surface(const UnitMomenta& momenta, const std::vector<Column>& columns) {
+  if (momenta.dimension() == 2) return momenta.has_line() ? cylinder(columns) : sphere();
+  return momenta.has_line() ? lines(columns) : circle(momenta);
 }
 
 }  // namespace carnot::internal

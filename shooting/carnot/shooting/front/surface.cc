@@ -10,16 +10,12 @@
 #include <unordered_map>
 #include <utility>
 
+#include "carnot/shooting/front/image_scale.h"
+
 namespace carnot::internal {
 namespace {
 
 using Point = std::vector<double>;
-
-double distance(const Point& a, const Point& b) {
-  double sum = 0;
-  for (std::size_t j = 0; j < a.size(); ++j) sum += (a[j] - b[j]) * (a[j] - b[j]);
-  return std::sqrt(sum);
-}
 
 // The angle at the edge between two triangles of images, 0 where they lie in one plane: of the
 // parts of c - a and d - a across the edge.
@@ -226,6 +222,19 @@ std::vector<std::vector<int>> Surface::neighbours() const {
     lists.emplace_back(sets[i].begin(), sets[i].end());
   }
   return lists;
+}
+
+std::vector<bool> Surface::on_border() const {
+  std::vector<bool> border(vertices.size(), false);
+  Sides(*this).each_edge([&](const Edge& edge, int first, int end) {
+    if (end - first == 1) border[edge.first] = border[edge.second] = true;
+  });
+  std::vector<int> ends(vertices.size(), 0);
+  for (const auto& segment : segments) {
+    for (const int i : segment) ++ends[i];
+  }
+  for (std::size_t i = 0; i < ends.size(); ++i) border[i] = border[i] || ends[i] == 1;
+  return border;
 }
 
 bool cut_edges(const std::vector<Edge>& cut, const MakeVertices& make, Surface& surface) {

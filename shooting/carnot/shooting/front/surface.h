@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "carnot/shooting/front/columns.h"
 #include "carnot/shooting/front/unit_momenta.h"
 
 namespace carnot::internal {
@@ -40,11 +41,14 @@ struct Surface {
   [[nodiscard]] SurfaceVertex between(const Between& part) const;
   // Which vertices share a triangle or a segment with each.
   [[nodiscard]] std::vector<std::vector<int>> neighbours() const;
+  // Whether each vertex is on an edge of one triangle only, or the end of one segment only.
+  [[nodiscard]] std::vector<bool> on_border() const;
   [[nodiscard]] bool empty() const { return triangles.empty() && segments.empty(); }
 };
 
-// All momenta of unit speed, w from -bound to bound where there is a line.
-Surface first_surface(const UnitMomenta& momenta, double bound);
+// All momenta of unit speed, or those of the columns where there is a line: then number k of the
+// columns has the vertices k, k + (number of columns) and so on.
+Surface first_surface(const UnitMomenta& momenta, const std::vector<Column>& columns);
 
 // Fills the images of new vertices, number `first` and those after it, whose parents are given;
 // false to stop.
