@@ -85,17 +85,18 @@ Axis axis_of_values(const SurfacePage& page) {
   return Axis(range);
 }
 
-// A patch has one colour. So a triangle whose values differ by more than `step` is cut in two in
-// the middle of the edge on which they differ most, and so on: long thin ones would look like
-// spikes.
+// A patch has one colour. So a triangle is cut in two in the middle of the edge on which values
+// differ most, as long as the difference is above `step` and the edge long enough to be seen: its
+// place differs by more than `step`, too. Long thin triangles would look like spikes.
 template <class Put>
-void put_by_value(const std::array<Valued, 3>& t, double step, const Put& put) {
-  const auto difference = [&](int k) { return std::abs(t[k][3] - t[(k + 1) % 3][3]); };
+void put_by_value(const std::array<Valued, 3>& t, const Valued& step, const Put& put) {
+  const auto difference = [&](int k, int j) { return std::abs(t[k][j] - t[(k + 1) % 3][j]); };
   int k = 0;
   for (const int other : {1, 2}) {
-    if (difference(other) > difference(k)) k = other;
+    if (difference(other, 3) > difference(k, 3)) k = other;
   }
-  if (!(difference(k) > step)) {
+  const auto differs = [&](int j) { return difference(k, j) > step[j]; };
+  if (!differs(3) || !(differs(0) || differs(1) || differs(2))) {
     put(t);
     return;
   }
@@ -108,35 +109,52 @@ void put_by_value(const std::array<Valued, 3>& t, double step, const Put& put) {
   put_by_value({middle, b, c}, step, put);
 }
 
+// All patches of a page.
+template <class Put>
+void put_patches(const SurfacePage& page, const Valued& step, const Put& put) {
+  for (const SurfaceSheet& sheet : page.sheets) {
+    for (const auto& t : sheet.triangles) {
+      const std::vector<Valued> piece = drawn_part(page, sheet, t);
+      for (std::size_t k = 2; k < piece.size(); ++k) {
+        put_by_value({piece[0], piece[k - 1], piece[k]}, step, put);
+      }
+    }
+  }
+}
+
 // A triangle is a patch of two lines, of which one has become a point. Pieces with four corners are
 // two of them: the light falls on other patches as if they were turned round.
 void put_pieces(Script& script,
                 const SurfacePage& page,
                 const std::array<Axis, 3>& axes,
                 const Axis& values) {
-  constexpr double kColors = 40;  // that are told apart
-  const double step = (values.upper - values.lower) / kColors;
+  // Colours that are told apart, and places: more patches look the same. A picture with 60,000 of
+  // them takes ten seconds, so there are not many more of them than triangles.
+  constexpr double kColors = 40;
+  constexpr double kFewestColors = 5;
+  constexpr double kPlaces = 150;
+  std::size_t most = 10000;
+  for (const SurfaceSheet& sheet : page.sheets) most += 2 * sheet.triangles.size();
+  Valued step{axes[0].span() / kPlaces, axes[1].span() / kPlaces, axes[2].span() / kPlaces, 0};
+  for (double colors = kColors; colors >= kFewestColors; colors /= 2) {
+    step[3] = values.span() / colors;
+    std::size_t patches = 0;
+    put_patches(page, step, [&](const std::array<Valued, 3>&) { ++patches; });
+    if (patches <= most) break;
+  }
   const auto put = [&](const Valued& corner) {
     for (int k = 0; k < 3; ++k) script << number(axes[k].at(corner[k]), 7) << " ";
     script << number(corner[3], 5) << "\n";
   };
   script << "$surface << EOD\n";
-  for (const SurfaceSheet& sheet : page.sheets) {
-    for (const auto& t : sheet.triangles) {
-      const std::vector<Valued> piece = drawn_part(page, sheet, t);
-      for (std::size_t k = 2; k < piece.size(); ++k) {
-        put_by_value(
-            {piece[0], piece[k - 1], piece[k]}, step, [&](const std::array<Valued, 3>& patch) {
-              put(patch[0]);
-              put(patch[1]);
-              script << "\n";
-              put(patch[2]);
-              put(patch[2]);
-              script << "\n\n";
-            });
-      }
-    }
-  }
+  put_patches(page, step, [&](const std::array<Valued, 3>& patch) {
+    put(patch[0]);
+    put(patch[1]);
+    script << "\n";
+    put(patch[2]);
+    put(patch[2]);
+    script << "\n\n";
+  });
   script << "EOD\n";
 }
 
