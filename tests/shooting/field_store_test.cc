@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 namespace carnot::internal::field_store_test {
 namespace {
 
@@ -61,6 +63,17 @@ TEST(FieldStore, DoubtsEndWithAnImprovement) {
   EXPECT_TRUE(store.doubted(0));
   store.put(0, some_point(1));
   EXPECT_FALSE(store.doubted(0));
+}
+
+// A state is what a store keeps in memory, and two numbers of each list besides.
+TEST(FieldStore, TakesFewerThan300BytesForAPointOfFourCoordinates) {
+  constexpr long kPoints = 1000;
+  constexpr std::size_t kMost = 300;
+  std::ostringstream state;
+  ByteWriter bytes(state);
+  FieldStore(kPoints, 4, 4).write(bytes);
+  EXPECT_LE(state.str().size(), kMost * kPoints);
+  EXPECT_GE(state.str().size(), 8 * (8 + 16 + 10) * kPoints);
 }
 
 }  // namespace

@@ -51,7 +51,8 @@ std::vector<int> FieldStore::windings(long i) const {
 }
 
 void FieldStore::put(long i, const FieldPoint& point) {
-  ++states_[i].version;
+  constexpr std::uint8_t kAllThree = 0b111;
+  states_[i].news = kAllThree;
   states_[i].doubted = false;
   replace(i, point);
 }
@@ -93,9 +94,10 @@ void FieldStore::read(ByteReader& in) {
 }
 
 bool FieldStore::has_news(long i, int whom) {
-  State& state = states_[i];
-  if (state.told[whom] == state.version) return false;
-  state.told[whom] = state.version;
+  const auto bit = static_cast<std::uint8_t>(1U << static_cast<unsigned>(whom));
+  std::uint8_t& news = states_[i].news;
+  if ((news & bit) == 0) return false;
+  news = static_cast<std::uint8_t>(news & ~bit);
   return true;
 }
 

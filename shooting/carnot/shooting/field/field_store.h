@@ -1,11 +1,10 @@
 // What is known of the points of a field, in little memory.
 //
-// A point takes 8 (2n + n^2 + n(n+1)/2) bytes of numbers and 24 + 2a bytes besides, with a axes:
-// 198 for three coordinates, 304 for four. Different points may be read and written by different
+// A point takes 8 (2n + n^2 + n(n+1)/2) bytes of numbers and 16 + 2a bytes besides, with a axes:
+// 190 for three coordinates, 296 for four. Different points may be read and written by different
 // threads.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -64,9 +63,7 @@ class FieldStore {
   struct State {
     double action = 0;
     int origin = -1;
-    // How often it was improved, and which of these its neighbours have been told.
-    std::uint16_t version = 0;
-    std::array<std::uint16_t, 3> told{};
+    std::uint8_t news = 0;  // a bit for each that has not been told of the last improvement
     std::int8_t sign = 0;
     bool known = false;
     bool doubted = false;
