@@ -365,6 +365,7 @@ class FrontMaker {
 
   bool made_times() {
     if (options_.what != FrontKind::kFront || !options_.times) return true;
+    seeds_.clear();  // of the first mesh; now any vertex may be searched
     return find_cuts();
   }
 

@@ -1,6 +1,7 @@
 // Places in space as a mesh measures them: the coordinates that are seen, each 1 wide.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 namespace carnot::internal {

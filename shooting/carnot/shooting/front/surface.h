@@ -46,8 +46,8 @@ struct Surface {
   [[nodiscard]] bool empty() const { return triangles.empty() && segments.empty(); }
 };
 
-// All momenta of unit speed, or those of the columns where there is a line. On a circle times a line
-// number k of the columns has the vertices k, k + (number of columns) and so on.
+// All momenta of unit speed, or those of the columns where there is a line. On a circle times a
+// line number k of the columns has the vertices k, k + (number of columns) and so on.
 Surface first_surface(const UnitMomenta& momenta, const std::vector<Column>& columns);
 
 // Fills the images of new vertices, number `first` and those after it, whose parents are given;
