@@ -5,17 +5,15 @@
 
 #include <cctype>
 #include <cmath>
-#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <optional>
 #include <sstream>
 #include <stdexcept>
 
-#include "carnot/plots/interrupts_blocked.h"
 #include "carnot/plots/replace_file.h"
+#include "carnot/plots/run_gnuplot.h"
 
 namespace carnot::plots {
 namespace {
@@ -90,45 +88,6 @@ class Workshop {
   fs::path path_;
 };
 
-// Processes that are started while it lives ignore interrupts: shells unblock signals when they
-// start, but leave those alone that are ignored. For this one they are blocked meanwhile.
-class ChildrenIgnoreInterrupts {
- public:
-  ChildrenIgnoreInterrupts() {
-    struct sigaction ignore {};
-    ignore.sa_handler = SIG_IGN;
-    sigaction(SIGINT, &ignore, &interrupt_);
-    sigaction(SIGTERM, &ignore, &terminate_);
-  }
-  ~ChildrenIgnoreInterrupts() {
-    sigaction(SIGINT, &interrupt_, nullptr);
-    sigaction(SIGTERM, &terminate_, nullptr);
-  }
-  ChildrenIgnoreInterrupts(const ChildrenIgnoreInterrupts&) = delete;
-  ChildrenIgnoreInterrupts& operator=(const ChildrenIgnoreInterrupts&) = delete;
-
- private:
-  InterruptsBlocked blocked_;  // first made, last destroyed
-  struct sigaction interrupt_ {};
-  struct sigaction terminate_ {};
-};
-
-std::string shell_quoted(const std::string& text) {
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
-
-// The shell notes gnuplot's status and swallows what gnuplot did not read: otherwise a gnuplot that
-// is missing or stops early would kill this program by SIGPIPE. It only uses built-in commands.
-// Ctrl-C reaches every process of the terminal: with interrupts blocked from their start on the
-// shell and gnuplot stay, and this program answers.
-std::string command_line(const fs::path& directory) {
-  return "cd " + shell_quoted(directory.string()) +
-         " && { LC_ALL=C.UTF-8 gnuplot -d; echo $? > status; "
-         "while read -r line; do :; done; } > log 2>&1; :";
-}
-
 // What gnuplot said, but for the count of frames it gives for every film.
 std::string first_lines(const std::string& text) {
   constexpr std::size_t kLongest = 600;
@@ -169,20 +128,26 @@ std::string write_picture(const std::string& file, const Picture& picture) {
   const Workshop workshop(fs::absolute(directory_of(followed(file))));
   const std::string name = "figure" + ending(file);
   {
-    auto starting = std::make_optional<ChildrenIgnoreInterrupts>();
-    gnuplotio::Gnuplot gnuplot(command_line(workshop.path()));
-    starting.reset();
-    gnuplot << "set encoding utf8\nset minussign\n" << terminal(ending(file), picture);
-    gnuplot << "set output '" << name << "'\n" << picture.commands << "\nset output\n";
-  }  // waits for gnuplot
-  const std::string status = workshop.read("status");
+    gnuplotio::Gnuplot script(">" + (workshop.path() / "script").string());
+    script << "set encoding utf8\nset minussign\n" << terminal(ending(file), picture);
+    script << "set output '" << name << "'\n" << picture.commands << "\nset output\n";
+    if (!script.flush()) {
+      throw std::runtime_error("cannot write '" + file + "': no room for gnuplot's script");
+    }
+  }
+  const auto failed = [&](const std::string& why) {
+    return std::runtime_error("gnuplot could not draw '" + file + "': " + why);
+  };
+  bool ended_well = false;
+  try {
+    ended_well = run_gnuplot(workshop.path().string(), "script", "log");
+  } catch (const std::runtime_error& error) {
+    throw failed(error.what());
+  }
   const fs::path drawn = workshop.path() / name;
   std::error_code error;
   const auto size = fs::file_size(drawn, error);
-  if (status != "0\n" || error || size == 0) {
-    throw std::runtime_error("gnuplot could not draw '" + file +
-                             "': " + first_lines(workshop.read("log")));
-  }
+  if (!ended_well || error || size == 0) throw failed(first_lines(workshop.read("log")));
   replace_file(drawn.string(), file);
   return first_lines(workshop.read("log"));
 }
