@@ -18,7 +18,7 @@ at the length R. sphere: those that are shortest paths up to there, sewn along t
 their first conjugate points, or those of --order K, at lengths up to R; cut: where they stop being
 shortest, at lengths up to R. For scenes with two or three admissible directions, and any with two
 coordinates; where there are more than three coordinates, --fix momenta until a surface is left, and
-see a section. --cusps tells the cusp lines of a caustic, closed or open, its umbilics with their
+see a section. Of a front, a condition on the ends leaves one, too: --fix theta=phi, or theta=0.5. --cusps tells the cusp lines of a caustic, closed or open, its umbilics with their
 type, and swallowtails. What is left out is said. Columns of a .csv: q_NAME..., p0_NAME..., t_cut,
 t_conj, length, label; p0 is of speed 1.
 
@@ -33,6 +33,7 @@ Examples
   carnot front unicycle --from 0,0,0 --what sphere --length 2 --check --output sphere.vtp
   carnot front heisenberg-group --from 0,0,0 --what front --length 0.5,1 --output front.ply
   carnot front engel --from 0,0,0,0 --what front --length 1 --fix p_x4=0 --output engel.vtp
+  carnot front vehicle --from 0,0,0,0 --what front --length 1 --fix theta=phi --plot vehicle.png
   carnot front grushin --from 0,0 --what sphere --length 1,2 --check --plot spheres.png
   carnot front unicycle --from 0,0,0 --what caustic --length 8 --order 2 --plot second.png
   carnot front unicycle --from 0,0,0 --momentum 0.4,0.3,0.9 --what cut
@@ -87,8 +88,10 @@ void add_front_options(CLI::App& app, FrontCall& options) {
   add("--max-time", options.max_time, "T", "how far the extremal is followed (64 natural lengths)");
   add("--time-limit", options.time_limit, "SECONDS", "give up after so long (none)");
   app.add_option(
-         "--fix", options.fix, "fix a momentum, where there are more than three (repeatable)")
-      ->type_name("p_NAME=VALUE")
+         "--fix",
+         options.fix,
+         "fix a momentum, where there are more than three (repeatable), or where a front ends")
+      ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   add("--project", options.project, "X,Y,Z", "the coordinates that are seen (the first three)");
   add("--order", options.order, "K", "of a caustic: the K-th conjugate points (1)");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -80,12 +81,34 @@ int coordinate_of(const char* option,
   refuse(option, text, "there is no " + name, fmt::format("{}", fmt::join(names, ", ")));
 }
 
-// --fix p_NAME=VALUE
-std::pair<int, double> parse_fixed(const std::string& text, const std::vector<std::string>& names) {
+// --fix p_NAME=VALUE of a momentum; NAME=VALUE or NAME=NAME of the ends.
+void parse_fixed(const std::string& text,
+                 const std::vector<std::string>& names,
+                 FrontOptions& front) {
   const auto at = text.find('=');
-  if (at == std::string::npos) refuse("--fix", text, "there is no =", "p_NAME=VALUE");
-  const int j = coordinate_of("--fix", text, text.substr(0, at), "p_", names);
-  return {j, parse_real("--fix", text.substr(at + 1))};
+  if (at == std::string::npos) {
+    refuse("--fix", text, "there is no =", "p_NAME=VALUE, NAME=VALUE or NAME=NAME");
+  }
+  const std::string left = text.substr(0, at);
+  const std::string right = text.substr(at + 1);
+  const auto is_name = [&](const std::string& word) {
+    return std::find(names.begin(), names.end(), word) != names.end();
+  };
+  if (!is_name(left)) {
+    const int j = coordinate_of("--fix", text, left, "p_", names);
+    front.fixed.emplace_back(j, parse_real("--fix", right));
+    return;
+  }
+  if (front.section) {
+    refuse("--fix", text, "there is a condition on the ends already", "one such condition");
+  }
+  EndCondition& end = front.section.emplace();
+  end.coordinate = coordinate_of("--fix", text, left, "", names);
+  if (is_name(right)) {
+    end.equal = coordinate_of("--fix", text, right, "", names);
+  } else {
+    end.value = parse_real("--fix", right);
+  }
 }
 
 // --mod-sign NAME,NAME...: -1 for these coordinates.
@@ -118,7 +141,7 @@ void parse_surface(const FrontCall& options, const Run& run, FrontRequest& reque
     request.lengths.push_back(parse_positive("--length", part));
   }
   for (const std::string& text : options.fix) {
-    request.front.fixed.push_back(parse_fixed(text, names));
+    parse_fixed(text, names, request.front);
   }
   if (!options.project.empty()) {
     for (const std::string& name : split(options.project, ',')) {
@@ -161,7 +184,7 @@ void check_surface(const FrontRequest& request, const Run& run) {
     check_wavefront(run.dynamics, request.from, request.front);
   } catch (const std::invalid_argument& error) {
     refuse(
-        request.front.fixed.empty() ? "SCENE" : "--fix",
+        request.front.fixed.empty() && !request.front.section ? "SCENE" : "--fix",
         run.entry->info.name,
         error.what(),
         "a scene with two or three admissible directions, and --fix where it has more than three "

@@ -198,11 +198,6 @@ std::string surfaces_failure(const FrontRequest& request, const std::vector<Fron
   return "";
 }
 
-std::vector<int> seen_of(const FrontRequest& request) {
-  if (!request.front.project.empty()) return request.front.project;
-  return request.from.size() == 2 ? std::vector{0, 1} : std::vector{0, 1, 2};
-}
-
 // The momentum that differs most on the surfaces: that along their line.
 int widest_momentum(const std::vector<FrontMesh>& meshes, int dof) {
   int widest = 0;
@@ -255,7 +250,7 @@ std::string draw_surfaces(const FrontRequest& request,
                           const std::vector<FrontMesh>& meshes,
                           const std::string& file) {
   const SceneInfo& info = request.run.dynamics.info;
-  const std::vector<int> seen = seen_of(request);
+  const std::vector<int> seen = seen_coordinates(request.run.dynamics, request.front);
   const FrontKind what = request.front.what;
   const bool times = what == FrontKind::kCaustic || what == FrontKind::kCut;
   const int momentum = widest_momentum(meshes, request.run.dynamics.dof);
@@ -308,7 +303,10 @@ Result surfaces_result(const FrontRequest& request,
   result.json = surfaces_json(request, meshes, result.message, arguments);
   result.text = [&] { return surfaces_text(request, meshes); };
   result.csv = [&] {
-    return mesh_text(request.output, request.run.dynamics.info, meshes, seen_of(request));
+    return mesh_text(request.output,
+                     request.run.dynamics.info,
+                     meshes,
+                     seen_coordinates(request.run.dynamics, request.front));
   };
   result.draw = [&](const std::string& file) { return draw_surfaces(request, meshes, file); };
   return result;

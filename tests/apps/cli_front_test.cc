@@ -239,6 +239,19 @@ TEST(FrontCommand, FixesMomentaOfASection) {
   EXPECT_THAT(outcome.json()["surfaces"][1]["left_out"].get<std::string>(), HasSubstr("beyond"));
 }
 
+Words vehicle_front(const Words& more) {
+  return with({"front", "vehicle", "--from", "0,0,0,0", "--what", "front", "--length", "1"}, more);
+}
+
+TEST(FrontCommand, TakesAConditionOnTheEnds) {
+  const Sandbox sandbox;
+  const Outcome outcome = sandbox.run(
+      vehicle_front({"--fix", "theta=phi", "--edge", "1", "--output", "a.csv", "--bound", "4"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("left out: momenta beyond 4 in their plane"));
+  EXPECT_THAT(sandbox.files(), ElementsAre("a.csv"));
+}
+
 TEST(FrontCommand, SaysThatTimeWasUp) {
   const Outcome late =
       run(unicycle({"--momentum", "0.4,0.3,0.9", "--time-limit", "1e-9", "--json"}));
@@ -260,6 +273,11 @@ TEST(FrontCommand, RefusesInOneLine) {
       {unicycle({"--length", "1", "--fix", "p_q=1"}), "--fix 'p_q=1'"},
       {unicycle({"--length", "1", "--fix", "p_y"}), "there is no ="},
       {unicycle({"--length", "1", "--project", "x,y"}), "--project"},
+      {vehicle_front({"--fix", "theta=psi"}), "'psi'"},
+      {vehicle_front({"--fix", "theta=theta"}), "always that which it is"},
+      {vehicle_front({"--fix", "theta=phi", "--fix", "x=1"}), "a condition on the ends already"},
+      {vehicle_front({"--fix", "theta=phi", "--fix", "p_x=1"}), "two momenta beside them are free"},
+      {vehicle_front({"--fix", "theta=phi", "--what", "sphere"}), "--what"},
       {unicycle({"--length", "1", "--output", "a.stl"}), "'a.stl'"},
       {unicycle({"--length", "1", "--check"}), "--check"},
       {unicycle({"--length", "1", "--edge", "2"}), "--edge"},

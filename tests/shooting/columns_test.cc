@@ -49,7 +49,8 @@ TEST(Columns, EndWhereExtremalsAreConjugate) {
   for (const Column& column : columns_of(dynamics, 0.2)) {
     for (const double w : {column.low, column.high}) {
       const auto time = [&](double part) {
-        return conjugate_time(Ray(dynamics, kOrigin, momenta.momentum({column.c, part * w})), 2);
+        return conjugate_time(Ray(dynamics, kOrigin, momenta.momentum({column.c, {part * w, 0}})),
+                              2);
       };
       EXPECT_LE(time(1), 1) << column.c.transpose() << " " << w;
       EXPECT_GT(time(1 - 2 * kTold), 1) << column.c.transpose() << " " << w;

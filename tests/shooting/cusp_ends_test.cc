@@ -11,7 +11,7 @@ namespace carnot::internal::cusp_ends_test {
 namespace {
 
 UnitMomentum at(double angle, double height = 0) {
-  return {{std::cos(angle), std::sin(angle), 0}, height};
+  return {{std::cos(angle), std::sin(angle), 0}, {height, 0}};
 }
 
 CuspLine line(const std::vector<double>& angles) {

@@ -453,6 +453,52 @@ TEST(Wavefront, IsASectionWhereMomentaAreFixed) {
   }
 }
 
+// theta = phi at the end of every extremal. The front of the vehicle is the same after a turn of
+// the plane, and after a reversal: (x, y, theta, phi) and (-x, -y, theta, phi) are ends together.
+TEST(Wavefront, IsASectionWhereEndsAreToldToAgree) {
+  constexpr double kRoundOff = 1e-10;
+  const Dynamics vehicle = test::vehicle({0, 0, 0, 0}, {0, 0, 0, 0}).dynamics;
+  FrontOptions options;
+  options.what = FrontKind::kFront;
+  options.edge = 1;
+  options.angle = 4;
+  options.section = EndCondition{2, 3, 0};
+  const FrontMesh mesh = wavefront(vehicle, {0, 0, 0, 0}, options);
+  ASSERT_TRUE(mesh.finished);
+  EXPECT_THAT(mesh.message, HasSubstr("conjugate at the length 1"));
+  double widest = 0;
+  for (const FrontVertex& vertex : mesh.vertices) {
+    EXPECT_NEAR(vertex.q[2], vertex.q[3], kRoundOff);
+    EXPECT_NEAR(std::hypot(vertex.p0[0], vertex.p0[3]), 1, 1e-13);
+    widest = std::max(widest, std::abs(vertex.q[0]));
+  }
+  EXPECT_NEAR(widest, 1, 1e-3);  // straight on
+  const auto has_end_near = [&](const std::vector<double>& q) {
+    return std::any_of(mesh.vertices.begin(), mesh.vertices.end(), [&](const FrontVertex& vertex) {
+      double square = 0;
+      for (int j = 0; j < 4; ++j) square += (vertex.q[j] - q[j]) * (vertex.q[j] - q[j]);
+      return square < 0.1 * 0.1;
+    });
+  };
+  for (std::size_t i = 0; i < mesh.vertices.size(); i += 40) {
+    const std::vector<double>& q = mesh.vertices[i].q;
+    EXPECT_TRUE(has_end_near({q[0], -q[1], -q[2], -q[3]})) << i;
+  }
+}
+
+TEST(Wavefront, SeesWhatASectionDoesNotTell) {
+  const Dynamics engel = test::engel({0, 0, 0, 0}).dynamics;
+  FrontOptions options;
+  EXPECT_EQ(seen_coordinates(engel, options), (std::vector{0, 1, 2}));
+  options.section = EndCondition{1, -1, 0};
+  EXPECT_EQ(seen_coordinates(engel, options), (std::vector{0, 2, 3}));
+  options.section = EndCondition{0, 2, 0};
+  EXPECT_EQ(seen_coordinates(engel, options), (std::vector{0, 1, 3}));
+  options.project = {3, 2, 1};
+  EXPECT_EQ(seen_coordinates(engel, options), (std::vector{3, 2, 1}));
+  EXPECT_EQ(seen_coordinates(grushin(), {}), (std::vector{0, 1}));
+}
+
 TEST(Wavefront, RefusesWhatHasNoSurface) {
   const std::vector<double> origin{0, 0, 0};
   const auto refused = [](const Dynamics& dynamics, const std::vector<double>& from, auto change) {
@@ -473,6 +519,18 @@ TEST(Wavefront, RefusesWhatHasNoSurface) {
   refused(unicycle(), origin, [](FrontOptions& o) { o.order = 2; });
   refused(unicycle(), origin, [](FrontOptions& o) { o.cusps = true; });
   refused(grushin(), {0, 0}, [](FrontOptions& o) { o.project = {0, 1, 1}; });
+  refused(unicycle(), origin, [](FrontOptions& o) { o.section = EndCondition{2, -1, 0}; });
+  const auto with_section = [&](const EndCondition& end, FrontKind what = FrontKind::kFront) {
+    refused(test::engel({0, 0, 0, 0}).dynamics, {0, 0, 0, 0}, [&](FrontOptions& o) {
+      o.section = end;
+      o.what = what;
+    });
+  };
+  with_section({4, -1, 0});
+  with_section({0, 4, 0});
+  with_section({1, 1, 0});
+  with_section({1, -1, std::numeric_limits<double>::infinity()});
+  with_section({1, -1, 0}, FrontKind::kSphere);
   FrontOptions stopped = coarse(FrontKind::kCut, 1);
   stopped.progress = [](double) { return false; };
   EXPECT_FALSE(wavefront(unicycle(), origin, stopped).finished);

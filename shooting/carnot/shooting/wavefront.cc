@@ -18,9 +18,11 @@
 #include "carnot/shooting/front/columns.h"
 #include "carnot/shooting/front/cut_values.h"
 #include "carnot/shooting/front/enclosed.h"
+#include "carnot/shooting/front/end_section.h"
 #include "carnot/shooting/front/image_scale.h"
 #include "carnot/shooting/front/ray_ends.h"
 #include "carnot/shooting/front/seam.h"
+#include "carnot/shooting/front/section_surface.h"
 #include "carnot/shooting/front/surface.h"
 #include "carnot/shooting/front/unit_momenta.h"
 #include "carnot/shooting/linear/illinois.h"
@@ -66,6 +68,13 @@ void validate(const Dynamics& dynamics,
     refuse_unless(j >= 0 && j < dynamics.dof && std::isfinite(value), "there is no such momentum");
     refuse_unless(fixed.insert(j).second, "a momentum is fixed twice");
   }
+  if (!options.section) return;
+  const EndCondition& end = *options.section;
+  refuse_unless(options.what == FrontKind::kFront, "a condition on the ends is one of a front");
+  refuse_unless(end.coordinate >= 0 && end.coordinate < dynamics.dof && end.equal >= -1 &&
+                    end.equal < dynamics.dof && std::isfinite(end.value),
+                "there is no such coordinate");
+  refuse_unless(end.coordinate != end.equal, "a coordinate is always that which it is");
 }
 
 // All times are those of unit speed.
@@ -76,8 +85,8 @@ class FrontMaker {
         from_(from),
         options_(options),
         n_(dynamics.dof),
-        momenta_(dynamics, from, options.fixed),
-        scale_(seen(dynamics.dof, options.project)),
+        momenta_(measured_momenta(dynamics, from, options)),
+        scale_(seen_coordinates(dynamics, options)),
         horizon_(kMargin * options.length),
         cuts_(dynamics,
               from,
@@ -87,16 +96,15 @@ class FrontMaker {
                options.signs,
                options.seed,
                options.threads,
-               options.progress}) {}
+               options.progress}) {
+    if (!options.section) return;
+    section_.emplace(
+        dynamics_, from_, momenta_, *options.section, options.length, options.mod_angles);
+  }
 
   void run(FrontMesh& mesh) {
     mesh.length = options_.length;
-    const std::vector<Column> columns =
-        momenta_.has_line() ? first_columns() : std::vector<Column>{};
-    surface_ = first_surface(momenta_, columns);
-    for (std::size_t i = 0; i < surface_.vertices.size() && !columns.empty(); ++i) {
-      if (!columns[i % columns.size()].added) seeds_.push_back(static_cast<int>(i));
-    }
+    section_ ? begin_section() : begin_whole();
     mesh.finished = make_first() && refined() && made_cusps(mesh) && cut_out() && made_times();
     if (mesh.finished) deliver(mesh);
     mesh.searches = cuts_.searches();
@@ -104,11 +112,34 @@ class FrontMaker {
   }
 
  private:
-  // The coordinates that are seen.
-  static std::vector<int> seen(int n, std::vector<int> project) {
-    for (int k = 0; project.size() < 3 && k < std::min(n, 3); ++k) project.push_back(k);
-    return project;
+  void begin_whole() {
+    const std::vector<Column> columns =
+        momenta_.has_line() ? first_columns() : std::vector<Column>{};
+    surface_ = first_surface(momenta_, columns);
+    for (std::size_t i = 0; i < surface_.vertices.size() && !columns.empty(); ++i) {
+      if (!columns[i % columns.size()].added) seeds_.push_back(static_cast<int>(i));
+    }
   }
+  void begin_section() {
+    const double conjugate = options_.bound > 0 ? 0 : part_of_front(options_) * options_.length;
+    surface_ = section_surface(
+        {dynamics_, from_, momenta_, options_.length, conjugate, options_.threads}, *section_);
+  }
+  // With the axes of a plane.
+  static UnitMomenta measured_momenta(const Dynamics& dynamics,
+                                      const std::vector<double>& from,
+                                      const FrontOptions& options) {
+    UnitMomenta momenta(dynamics, from, options.fixed, options.section.has_value());
+    if (!options.section) return momenta;
+    if (options.bound > 0) {
+      momenta.set_plane(options.bound * Eigen::Matrix2d::Identity());
+    } else {
+      const double conjugate = part_of_front(options) * options.length;
+      momenta.set_plane(plane_axes(dynamics, from, momenta, conjugate, options.threads));
+    }
+    return momenta;
+  }
+
   [[nodiscard]] bool needs_cuts() const {
     return options_.what == FrontKind::kSphere || options_.what == FrontKind::kCut;
   }
@@ -141,15 +172,17 @@ class FrontMaker {
     return columns;
   }
 
-  [[nodiscard]] double chosen_bound() const {
-    // Of a front: what is conjugate up to half its length, some two turns. Of what ends at R: down
-    // to an eighth of it, which looks much the same, only smaller.
+  // Of a front: what is conjugate up to half its length, some two turns, is enough. Of a section
+  // that part folds too often for 100,000 vertices.
+  static double part_of_front(const FrontOptions& options) {
     constexpr double kOfFront = 0.5;
+    return options.what == FrontKind::kFront && !options.section ? kOfFront : 1;
+  }
+  [[nodiscard]] double chosen_bound() const {
+    // Of what ends at R: down to an eighth of it, which looks much the same, only smaller.
     constexpr double kOfTimes = 0.125;
     constexpr double kAnyway = 16;  // where conjugate times tell nothing
-    double part = 1;
-    if (options_.what == FrontKind::kFront) part = kOfFront;
-    if (!at_length()) part = kOfTimes;
+    const double part = at_length() ? part_of_front(options_) : kOfTimes;
     const double bound =
         conjugate_bound(dynamics_, from_, momenta_, part * options_.length, options_.threads);
     return std::isfinite(bound) ? bound : kAnyway / options_.length;
@@ -161,10 +194,14 @@ class FrontMaker {
     ends_.resize(static_cast<std::size_t>(last) * n_, kUnknown);
     if (!go_on()) return false;
     if (at_length()) {
+      const double reach = section_ ? 1 : bound_;
       std::vector<std::vector<double>> longest;
       for (const Eigen::Vector3d& c : momenta_.directions(3)) {
-        for (const double side : {1.0, -1.0})
-          longest.push_back(momenta_.momentum({c, side * bound_}));
+        for (int k = 0; k < std::max(momenta_.lines(), 1); ++k) {
+          for (const double side : {1.0, -1.0}) {
+            longest.push_back(momenta_.momentum({c, side * reach * Eigen::Vector2d::Unit(k)}));
+          }
+        }
       }
       const std::vector<double> ends = ray_ends(
           dynamics_, from_, momenta_from(first), longest, options_.length, options_.threads);
@@ -244,7 +281,18 @@ class FrontMaker {
     return times_[i] <= options_.length;
   }
 
+  // Middles of edges are beside a section.
+  void settle(int first) {
+    if (!section_) return;
+    const int last = static_cast<int>(surface_.vertices.size());
+    astray_.resize(last, 0);
+    for_all(first, last, [&](int i) {
+      if (go_on()) astray_[i] = section_->settle(surface_.vertices[i].place) ? 0 : 1;
+    });
+  }
+
   bool make(int first, const std::vector<Between>& parents) {
+    settle(first);
     if (needs_cuts()) {
       std::vector<std::pair<int, int>> pairs;
       for (const Between& place : parents) pairs.emplace_back(place.a, place.b);
@@ -260,14 +308,25 @@ class FrontMaker {
   bool refined() {
     constexpr double kShortest = 0.125;
     const double edge = longest_edge();
-    Refinement how{edge, part_of_curves() * options_.angle, kShortest * edge, options_.most, {}};
+    SurfaceRefinement how{
+        edge, part_of_curves() * options_.angle, kShortest * edge, options_.most, {}};
     how.make = [this](int first, const std::vector<Between>& parents) {
       if (!make(first, parents)) return false;
       leave_inside();
       return true;
     };
     rough_ = refine(how, surface_);
+    leave_astray();
     return rough_ >= 0;
+  }
+
+  // Takes triangles away whose corners are not on a section.
+  void leave_astray() {
+    std::erase_if(surface_.triangles, [&](const auto& t) {
+      return std::any_of(t.begin(), t.end(), [&](int i) {
+        return i < static_cast<int>(astray_.size()) && astray_[i] != 0;
+      });
+    });
   }
 
   // The time that tells inside from outside, at a momentum beside vertex `near`.
@@ -444,16 +503,30 @@ class FrontMaker {
     }
   }
 
+  [[nodiscard]] std::string beyond_bound() const {
+    std::ostringstream text;
+    text.precision(4);
+    text << "left out: momenta ";
+    if (!section_) {
+      text << "beyond " << bound_ << " along their line";
+    } else if (options_.bound > 0) {
+      text << "beyond " << options_.bound << " in their plane";
+    } else {
+      text << "whose extremals are conjugate at the length "
+           << part_of_front(options_) * options_.length;
+    }
+    return text.str();
+  }
+
   [[nodiscard]] std::string left_out() const {
     std::ostringstream text;
     text.precision(4);
     if (options_.what == FrontKind::kSphere && open_at_bound_) {
-      text << "left out: momenta beyond " << bound_
-           << " along their line, of which some are still those of shortest paths: the sphere is "
+      text << beyond_bound() << ", of which some are still those of shortest paths: the sphere is "
            << "open there";
     }
     if (options_.what != FrontKind::kSphere && momenta_.has_line()) {
-      text << "left out: momenta beyond " << bound_ << " along their line";
+      text << beyond_bound();
       if (!at_length() && options_.bound == 0)
         text << ", where times are below " << options_.length / 8;
     }
@@ -463,6 +536,10 @@ class FrontMaker {
     if (may_have_abnormal_curves(BoundaryValueProblem(dynamics_, from_, from_, 1))) {
       add() << "abnormal curves start here: beside their ends momenta grow beyond all bounds, and "
             << "what these lead to is left out";
+    }
+    if (const auto count = std::count(astray_.begin(), astray_.end(), 1); count > 0) {
+      add() << "holes about " << count << " places that are not led to the section: it bends there "
+            << "more sharply than the mesh tells";
     }
     if (rough_ > 0) {
       add() << rough_ << " edges are longer or sharper than asked for: more vertices were needed";
@@ -482,6 +559,7 @@ class FrontMaker {
   ImageScale scale_;
   double horizon_;
   CutValues cuts_;
+  std::optional<EndSection> section_;  // by a condition on the ends
   Surface surface_;
   std::vector<int> seeds_;  // vertices of the first mesh that may be searched; empty: all
   double bound_ = 0;
@@ -491,17 +569,29 @@ class FrontMaker {
   int seam_end_ = std::numeric_limits<int>::max();  // vertices from here on are inside
   bool open_at_bound_ = false;                      // some extremals are still inside there
   long rough_ = 0;
+  std::vector<char> astray_;  // whether a vertex of a section is not on it
   std::atomic<bool> stopped_{false};
 };
 
 }  // namespace
 
+std::vector<int> seen_coordinates(const Dynamics& dynamics, const FrontOptions& options) {
+  if (!options.project.empty()) return options.project;
+  const int told =
+      options.section ? std::max(options.section->coordinate, options.section->equal) : -1;
+  std::vector<int> seen;
+  for (int k = 0; seen.size() < 3 && k < dynamics.dof; ++k) {
+    if (k != told) seen.push_back(k);
+  }
+  return seen;
+}
+
 void check_wavefront(const Dynamics& dynamics,
                      const std::vector<double>& from,
                      const FrontOptions& options) {
   validate(dynamics, from, options);
-  const UnitMomenta momenta(dynamics, from, options.fixed);
-  const std::vector<double> p = momenta.momentum({Eigen::Vector3d::UnitX(), 0});
+  const UnitMomenta momenta(dynamics, from, options.fixed, options.section.has_value());
+  const std::vector<double> p = momenta.momentum({Eigen::Vector3d::UnitX()});
   (void)validated_speed(dynamics, from, p);
   check_signs(dynamics, from, options.signs);
 }

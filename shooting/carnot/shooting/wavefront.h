@@ -16,18 +16,20 @@
 // says so. The mesh is refined (front/surface.h) until edges and angles are as asked for.
 //
 // For scenes with two or three admissible directions, and any with two coordinates. With two or
-// three coordinates the mesh is the whole; with more, momenta are fixed until a surface is left,
-// and the mesh is a section.
+// three coordinates the mesh is the whole; with more it is a section: momenta are fixed until a
+// surface is left, or a condition on the ends of a front leaves one.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "carnot/dynamics.h"
+#include "carnot/shooting/front/end_condition.h"
 
 namespace carnot {
 
@@ -37,16 +39,20 @@ struct FrontOptions {
   FrontKind what = FrontKind::kFront;
   double length = 1;                            // R
   std::vector<std::pair<int, double>> fixed{};  // momenta p_j(0)
-  int order = 1;               // of a caustic: the k-th conjugate points, with multiplicity
-  bool cusps = false;          // cusp lines and umbilics of a caustic
-  std::vector<int> project{};  // the three coordinates that are seen; empty: the first ones
+  // Of a front whose momenta are a circle times a plane: what holds at all ends.
+  std::optional<EndCondition> section{};
+  int order = 1;       // of a caustic: the k-th conjugate points, with multiplicity
+  bool cusps = false;  // cusp lines and umbilics of a caustic
+  // The three coordinates that are seen. Empty: the first ones, but for the one that a section
+  // tells.
+  std::vector<int> project{};
   // The longest edge and, in radians, the largest angle between neighbouring triangles, in
   // coordinates that are 1 wide; of curves a quarter of both. Edges are not cut for an angle below
   // an eighth of the longest.
   double edge = 0.1;
   double angle = 0.35;
   int most = 100000;   // vertices
-  double bound = 0;    // of the coordinate along the line; 0: chosen
+  double bound = 0;    // of the coordinates along the line or in the plane; 0: chosen
   bool times = false;  // cut and conjugate times at the vertices of a front, too
   bool mod_angles = true;
   std::vector<double> signs{};  // under which places are one, as in cut_time.h
@@ -99,6 +105,9 @@ struct FrontMesh {
 FrontMesh wavefront(const Dynamics& dynamics,
                     const std::vector<double>& from,
                     const FrontOptions& options);
+
+// The coordinates that are seen of a mesh: two or three.
+std::vector<int> seen_coordinates(const Dynamics& dynamics, const FrontOptions& options);
 
 // Throws what wavefront() would throw.
 void check_wavefront(const Dynamics& dynamics,

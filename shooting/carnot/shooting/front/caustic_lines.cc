@@ -61,7 +61,7 @@ class Lines {
       if (!(std::abs(conjugate - found->t) <= kNear * found->t)) continue;
       const bool known = std::any_of(umbilics.begin(), umbilics.end(), [&](const Umbilic& other) {
         return (other.at.c - found->at.c).norm() <= kNear &&
-               std::abs(other.at.w - found->at.w) <= kNear * (1 + std::abs(other.at.w));
+               (other.at.w - found->at.w).norm() <= kNear * (1 + other.at.w.norm());
       });
       if (!known) umbilics.push_back(*found);
     }

@@ -11,33 +11,6 @@
 namespace carnot::internal {
 namespace {
 
-// The least |w| from which on the extremals of a direction and side are conjugate at `target`;
-// infinite where it is above 2^doublings / target.
-double bound_of(const Dynamics& dynamics,
-                const std::vector<double>& from,
-                const UnitMomenta& momenta,
-                double target,
-                const UnitMomentum& side,
-                int doublings) {
-  constexpr double kEnough = 0.02;
-  const auto is_conjugate = [&](double w) {
-    const Ray ray(dynamics, from, momenta.momentum({side.c, side.w * w}));
-    return conjugate_time(ray, 1.01 * target) <= target;
-  };
-  double low = 0;
-  double high = 1 / target;
-  for (int i = 0; !is_conjugate(high); ++i) {
-    if (i == doublings) return std::numeric_limits<double>::infinity();
-    low = high;
-    high *= 2;
-  }
-  while (high - low > kEnough * high) {
-    const double middle = 0.5 * (low + high);
-    (is_conjugate(middle) ? high : low) = middle;
-  }
-  return high;
-}
-
 // A column, and where its places end.
 struct ColumnEnds {
   Column column;
@@ -85,8 +58,8 @@ class ColumnMaker {
   [[nodiscard]] ColumnEnds made(const Eigen::Vector3d& c) const {
     constexpr int kDoublings = 13;
     const auto bound = [&](double side) {
-      return bound_of(
-          asked_.dynamics, asked_.from, asked_.momenta, asked_.target, {c, side}, kDoublings);
+      return bound_along(
+          asked_.dynamics, asked_.from, asked_.momenta, asked_.target, {c, {side, 0}}, kDoublings);
     };
     ColumnEnds one{{c, -bound(-1), bound(1)}, {}};
     if (!is_bounded(one.column)) return one;
@@ -139,8 +112,33 @@ class ColumnMaker {
 
 }  // namespace
 
+double bound_along(const Dynamics& dynamics,
+                   const std::vector<double>& from,
+                   const UnitMomenta& momenta,
+                   double target,
+                   const UnitMomentum& side,
+                   int doublings) {
+  constexpr double kEnough = 0.02;
+  const auto is_conjugate = [&](double w) {
+    const Ray ray(dynamics, from, momenta.momentum({side.c, w * side.w}));
+    return conjugate_time(ray, 1.01 * target) <= target;
+  };
+  double low = 0;
+  double high = 1 / target;
+  for (int i = 0; !is_conjugate(high); ++i) {
+    if (i == doublings) return std::numeric_limits<double>::infinity();
+    low = high;
+    high *= 2;
+  }
+  while (high - low > kEnough * high) {
+    const double middle = 0.5 * (low + high);
+    (is_conjugate(middle) ? high : low) = middle;
+  }
+  return high;
+}
+
 UnitMomentum place_on(const Column& column, int i) {
-  return {column.c, column.low + (column.high - column.low) * i / (kPlacesOnColumn - 1)};
+  return {column.c, {column.low + (column.high - column.low) * i / (kPlacesOnColumn - 1), 0}};
 }
 
 std::vector<Column> even_columns(const UnitMomenta& momenta, double bound) {
@@ -162,8 +160,8 @@ double conjugate_bound(const Dynamics& dynamics,
   const std::vector<Eigen::Vector3d> directions = momenta.directions(kRays);
   std::vector<double> least(2 * kRays, 0);
   parallel_for(2 * kRays, thread_count(threads), [&](int k) {
-    const UnitMomentum side{directions[k / 2], k % 2 == 0 ? 1.0 : -1.0};
-    least[k] = bound_of(dynamics, from, momenta, target, side, kDoublings);
+    const UnitMomentum side{directions[k / 2], {k % 2 == 0 ? 1.0 : -1.0, 0}};
+    least[k] = bound_along(dynamics, from, momenta, target, side, kDoublings);
   });
   return *std::max_element(least.begin(), least.end());
 }

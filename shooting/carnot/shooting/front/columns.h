@@ -36,6 +36,15 @@ UnitMomentum place_on(const Column& column, int i);
 // times.
 std::vector<Column> even_columns(const UnitMomenta& momenta, double bound);
 
+// The least x from which on the extremals at the places (c, x w) of a side (c, w) are conjugate at
+// `target`; infinite where it is above 2^doublings / target.
+double bound_along(const Dynamics& dynamics,
+                   const std::vector<double>& from,
+                   const UnitMomenta& momenta,
+                   double target,
+                   const UnitMomentum& side,
+                   int doublings);
+
 // The least |w| beyond which all extremals are conjugate at `target`; infinite where there is none.
 double conjugate_bound(const Dynamics& dynamics,
                        const std::vector<double>& from,

@@ -7,7 +7,7 @@
 namespace carnot::internal {
 
 double distance_of(const UnitMomentum& a, const UnitMomentum& b) {
-  return std::hypot((a.c - b.c).norm(), (a.w - b.w) / (1 + std::abs(a.w)));
+  return std::hypot((a.c - b.c).norm(), (a.w - b.w).norm() / (1 + a.w.norm()));
 }
 
 namespace {

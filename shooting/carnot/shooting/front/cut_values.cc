@@ -84,8 +84,8 @@ CutValue CutValues::searched(const std::vector<double>& p) {
 double CutValues::turned(const std::vector<double>& a, const std::vector<double>& b) const {
   const UnitMomentum one = all_momenta_.place(a);
   const UnitMomentum other = all_momenta_.place(b);
-  const double along = std::abs(one.w) + std::abs(other.w);
-  return (one.c - other.c).norm() + (along > 0 ? 2 * std::abs(one.w - other.w) / along : 0);
+  const double along = one.w.norm() + other.w.norm();
+  return (one.c - other.c).norm() + (along > 0 ? 2 * (one.w - other.w).norm() / along : 0);
 }
 
 // Near the edge of the cut locus the equations of a meeting are badly conditioned. Both rays are
@@ -108,9 +108,12 @@ Rival CutValues::moved(const Way& from, const Way& to, const Rival& rival) const
     guess.t *= to.conjugate / from.conjugate;
   }
   if (!all_momenta_.has_line()) return guess;
-  const double w = all_momenta_.place(from.p).w;
+  const Eigen::Vector2d w = all_momenta_.place(from.p).w;
+  const Eigen::Vector2d change = all_momenta_.place(to.p).w - w;
   UnitMomentum place = all_momenta_.place(rival.p);
-  place.w += std::copysign(1.0, w * place.w) * (all_momenta_.place(to.p).w - w);
+  for (int k = 0; k < all_momenta_.lines(); ++k) {
+    place.w[k] += std::copysign(1.0, w[k] * place.w[k]) * change[k];
+  }
   guess.p = all_momenta_.momentum(place);
   return guess;
 }

@@ -29,7 +29,7 @@ Surface sphere() {
   Surface surface;
   for (int k = 0; k < 3; ++k) {
     for (const double side : {1.0, -1.0}) {
-      surface.vertices.push_back({{side * Eigen::Vector3d::Unit(k), 0}, {}});
+      surface.vertices.push_back({{side * Eigen::Vector3d::Unit(k)}, {}});
     }
   }
   for (int octant = 0; octant < 8; ++octant) {
@@ -63,7 +63,7 @@ Surface sphere() {
 Surface circle(const UnitMomenta& momenta) {
   Surface surface;
   for (const Column& column : even_columns(momenta, 0)) {
-    surface.vertices.push_back({{column.c, 0}, {}});
+    surface.vertices.push_back({{column.c}, {}});
   }
   const auto around = static_cast<int>(surface.vertices.size());
   for (int j = 0; j < around; ++j) surface.segments.push_back({j, (j + 1) % around});

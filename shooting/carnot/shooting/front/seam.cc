@@ -21,10 +21,20 @@ std::map<Edge, int> edges_of(const Surface& surface) {
   return edges;
 }
 
-// b - a, w in units of `height`.
-Eigen::Vector4d difference(const UnitMomentum& a, const UnitMomentum& b, double height) {
-  Eigen::Vector4d apart;
-  apart << b.c - a.c, (b.w - a.w) / height;
+using Difference = Eigen::Matrix<double, 5, 1>;
+using Heights = Eigen::Vector2d;
+
+// The largest |w| of a surface, of either axis.
+Heights heights_of(const Surface& surface) {
+  Heights heights = Heights::Constant(1e-300);
+  for (const SurfaceVertex& v : surface.vertices) heights = heights.cwiseMax(v.place.w.cwiseAbs());
+  return heights;
+}
+
+// b - a, w in units of `heights`.
+Difference difference(const UnitMomentum& a, const UnitMomentum& b, const Heights& heights) {
+  Difference apart;
+  apart << b.c - a.c, (b.w - a.w).cwiseQuotient(heights);
   return apart;
 }
 
@@ -37,21 +47,19 @@ struct Foot {
 
 class Border {
  public:
-  explicit Border(const Surface& surface) : surface_(surface) {
+  explicit Border(const Surface& surface) : surface_(surface), heights_(heights_of(surface)) {
     for (const auto& [edge, count] : edges_of(surface)) {
       if (count == 1) edges_.push_back(edge);
     }
-    for (const SurfaceVertex& v : surface.vertices)
-      height_ = std::max(height_, std::abs(v.place.w));
   }
 
   [[nodiscard]] const UnitMomentum& place(int i) const { return surface_.vertices[i].place; }
-  [[nodiscard]] double height() const { return height_; }
+  [[nodiscard]] const Heights& heights() const { return heights_; }
   [[nodiscard]] Foot foot(const UnitMomentum& of) const {
     Foot nearest;
     for (const Edge& edge : edges_) {
-      const Eigen::Vector4d along = difference(place(edge.first), place(edge.second), height_);
-      const Eigen::Vector4d to = difference(place(edge.first), of, height_);
+      const Difference along = difference(place(edge.first), place(edge.second), heights_);
+      const Difference to = difference(place(edge.first), of, heights_);
       const double square = along.squaredNorm();
       const double part = square > 0 ? std::clamp(along.dot(to) / square, 0.0, 1.0) : 0;
       const double distance = (to - part * along).norm();
@@ -63,7 +71,7 @@ class Border {
  private:
   const Surface& surface_;
   std::vector<Edge> edges_;
-  double height_ = 1e-300;
+  Heights heights_;
 };
 
 // A fan in the place of each triangle with new vertices on a border edge.
@@ -111,14 +119,14 @@ void unite(std::vector<int>& classes, int a, int b) {
 void join_ends(const std::vector<BorderVertex>& border,
                const Surface& surface,
                std::vector<int>& classes) {
-  double height = 1e-300;
+  Heights heights = Heights::Constant(1e-300);
   for (const BorderVertex& one : border) {
-    height = std::max(height, std::abs(surface.vertices[one.vertex].place.w));
+    heights = heights.cwiseMax(surface.vertices[one.vertex].place.w.cwiseAbs());
   }
   for (const BorderVertex& one : border) {
     if (one.at_conjugate) continue;
     const auto far = [&](const BorderVertex& other) {
-      return difference(surface.vertices[other.vertex].place, one.partner, height).norm();
+      return difference(surface.vertices[other.vertex].place, one.partner, heights).norm();
     };
     const auto nearest = std::min_element(
         border.begin(), border.end(), [&](const BorderVertex& a, const BorderVertex& b) {
@@ -151,7 +159,7 @@ std::vector<int> sew(const std::vector<BorderVertex>& border,
     const Foot foot = sides.foot(one.partner);
     int same = -1;
     for (const int end : {foot.edge.first, foot.edge.second}) {
-      if (difference(sides.place(end), one.partner, sides.height()).norm() < kSameVertex)
+      if (difference(sides.place(end), one.partner, sides.heights()).norm() < kSameVertex)
         same = end;
     }
     if (same >= 0) {

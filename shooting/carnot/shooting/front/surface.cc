@@ -51,7 +51,7 @@ struct EdgeHash {
 };
 
 // The segments that ask to be cut.
-std::vector<Edge> segments_to_cut(const Refinement& how, const Surface& surface) {
+std::vector<Edge> segments_to_cut(const SurfaceRefinement& how, const Surface& surface) {
   std::vector<std::vector<int>> others(surface.vertices.size());
   std::set<Edge> cut;
   const auto image = [&](int i) -> const Point& { return surface.vertices[i].image; };
@@ -134,7 +134,7 @@ class Sides {
 };
 
 // The edges of triangles that ask to be cut.
-std::vector<Edge> edges_to_cut(const Refinement& how, const Surface& surface) {
+std::vector<Edge> edges_to_cut(const SurfaceRefinement& how, const Surface& surface) {
   const Sides sides(surface);
   std::vector<bool> cut(sides.size(), false);  // at the first side of an edge
   const auto image = [&](int i) -> const Point& { return surface.vertices[i].image; };
@@ -271,7 +271,7 @@ bool cut_edges(const std::vector<Edge>& cut, const MakeVertices& make, Surface& 
   return make(first, parents);
 }
 
-long refine(const Refinement& how, Surface& surface) {
+long refine(const SurfaceRefinement& how, Surface& surface) {
   constexpr int kMostRounds = 24;
   const auto wishes = [&] {
     return surface.segments.empty() ? edges_to_cut(how, surface) : segments_to_cut(how, surface);

@@ -55,7 +55,7 @@ Surface first_surface(const UnitMomenta& momenta, const std::vector<Column>& col
 using MakeVertices = std::function<bool(int first, const std::vector<Between>& parents)>;
 
 // What refines a surface.
-struct Refinement {
+struct SurfaceRefinement {
   double longest = 0;   // edge, in the units of images
   double sharpest = 0;  // angle between neighbours, in radians
   double shortest = 0;  // edges are not cut for an angle below this
@@ -64,7 +64,7 @@ struct Refinement {
 };
 
 // How many edges still ask to be cut when `most` is reached; -1 where it was stopped.
-long refine(const Refinement& how, Surface& surface);
+long refine(const SurfaceRefinement& how, Surface& surface);
 
 // Gives each of these edges, which differ, a vertex in its middle. False when stopped.
 bool cut_edges(const std::vector<Edge>& cut, const MakeVertices& make, Surface& surface);

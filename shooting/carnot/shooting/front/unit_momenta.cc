@@ -31,6 +31,26 @@ MatrixXd metric_at(const Dynamics& dynamics, const std::vector<double>& from) {
   return 0.5 * (a + a.transpose());
 }
 
+// Refuses momenta of so many coordinates, directions and free lines that are no surface, and no
+// curve of the plane.
+void check_surface(Eigen::Index n, Eigen::Index rank, Eigen::Index left) {
+  const Eigen::Index wanted = n == 2 ? 1 : 2;
+  if (rank <= 3 && left >= 0 && left <= 1 && rank - 1 + left == wanted) return;
+  const auto fix = n - 1 - wanted;
+  throw std::invalid_argument(
+      rank - 1 > wanted
+          ? "momenta of unit speed have too many dimensions for a surface: the rank is " +
+                std::to_string(rank) + ", and at most three directions are admissible"
+          : "momenta of unit speed are no surface: the rank is " + std::to_string(rank) + ", and " +
+                std::to_string(fix) + " momenta are to be fixed");
+}
+
+// Orthonormal columns that the rows map to zero: what is left of as many as the rows have columns.
+MatrixXd kernel_of(const MatrixXd& rows, Eigen::Index left) {
+  if (left == 1) return *kernel_line(rows, kRank);
+  return right_singular(rows).vectors.rightCols(left);
+}
+
 }  // namespace
 
 UnitMomentum between(const UnitMomentum& a, const UnitMomentum& b, double part) {
@@ -42,21 +62,22 @@ UnitMomentum between(const UnitMomentum& a, const UnitMomentum& b, double part) 
 
 UnitMomenta::UnitMomenta(const Dynamics& dynamics,
                          const std::vector<double>& from,
-                         const std::vector<std::pair<int, double>>& conditions) {
+                         const std::vector<std::pair<int, double>>& conditions,
+                         bool condition_on_ends) {
   const int n = dynamics.dof;
   const SymmetricEigen eigen = symmetric_eigen(metric_at(dynamics, from));
   const auto rank = (eigen.values.array() > kRank * eigen.values.maxCoeff()).count();
   const auto m = static_cast<Eigen::Index>(conditions.size());
   const auto left = n - rank - m;
-  const Eigen::Index wanted = n == 2 ? 1 : 2;
-  if (rank > 3 || left < 0 || left > 1 || rank - 1 + left != wanted) {
-    const auto fix = n - 1 - wanted;
-    throw std::invalid_argument(
-        rank - 1 > wanted
-            ? "momenta of unit speed have too many dimensions for a surface: the rank is " +
-                  std::to_string(rank) + ", and at most three directions are admissible"
-            : "momenta of unit speed are no surface: the rank is " + std::to_string(rank) +
-                  ", and " + std::to_string(fix) + " momenta are to be fixed");
+  if (condition_on_ends) {
+    if (rank != 2 || left != 2) {
+      throw std::invalid_argument(
+          "a condition on the ends leaves a surface where two directions are admissible and two "
+          "momenta beside them are free; here these are " +
+          std::to_string(rank) + " and " + std::to_string(left));
+    }
+  } else {
+    check_surface(n, rank, left);
   }
   const VectorXd root = eigen.values.tail(rank).cwiseSqrt();
   circle_ = eigen.vectors.rightCols(rank) * root.cwiseInverse().asDiagonal();
@@ -65,7 +86,7 @@ UnitMomenta::UnitMomenta(const Dynamics& dynamics,
   slope_ = MatrixXd::Zero(n, rank);
   base_ = VectorXd::Zero(n);
   if (m == 0) {
-    if (left == 1) line_ = kernel.col(0);
+    lines_ = kernel;
   } else {
     MatrixXd rows(m, n);
     rows.setZero();
@@ -78,17 +99,24 @@ UnitMomenta::UnitMomenta(const Dynamics& dynamics,
     if (!(singular_values(fixed).minCoeff() > kRank)) {
       throw std::invalid_argument("the fixed momenta do not move along the kernel of H");
     }
-    if (left == 1) line_ = kernel * *kernel_line(fixed, kRank);
+    if (left > 0) lines_ = kernel * kernel_of(fixed, left);
     base_ = kernel * least_squares(fixed, values, kRank);
     for (Eigen::Index k = 0; k < rank; ++k) {
       slope_.col(k) = -kernel * least_squares(fixed, rows * circle_.col(k), kRank);
     }
   }
   // The sign of an eigenvector is arbitrary.
-  if (left == 0) return;
-  Eigen::Index largest = 0;
-  line_.cwiseAbs().maxCoeff(&largest);
-  if (line_[largest] < 0) line_ = -line_;
+  for (Eigen::Index k = 0; k < left; ++k) {
+    Eigen::Index largest = 0;
+    lines_.col(k).cwiseAbs().maxCoeff(&largest);
+    if (lines_(largest, k) < 0) lines_.col(k) *= -1;
+  }
+  on_lines_ = lines_.transpose();
+}
+
+void UnitMomenta::set_plane(const Eigen::Matrix2d& axes) {
+  lines_ = lines_ * axes;
+  on_lines_ = axes.inverse() * on_lines_;
 }
 
 VectorXd UnitMomenta::around(const Eigen::Vector3d& c) const {
@@ -97,7 +125,7 @@ VectorXd UnitMomenta::around(const Eigen::Vector3d& c) const {
 
 std::vector<double> UnitMomenta::momentum(const UnitMomentum& place) const {
   VectorXd p = around(place.c);
-  if (has_line()) p += place.w * line_;
+  if (has_line()) p += lines_ * place.w.head(lines());
   return {p.data(), p.data() + p.size()};
 }
 
@@ -105,25 +133,26 @@ UnitMomentum UnitMomenta::place(const std::vector<double>& p) const {
   const Eigen::Map<const VectorXd> at(p.data(), static_cast<Eigen::Index>(p.size()));
   UnitMomentum place;
   place.c.head(rank()) = (on_circle_ * at).normalized();
-  if (has_line()) place.w = line_.dot(at - around(place.c));
+  if (has_line()) place.w.head(lines()) = on_lines_ * (at - around(place.c));
   return place;
 }
 
 std::array<UnitMomentum, 2> UnitMomenta::ways(const UnitMomentum& at) const {
   if (has_line()) {
     const Eigen::Vector3d along(-at.c[1], at.c[0], 0);
-    return {UnitMomentum{along, 0}, UnitMomentum{Eigen::Vector3d::Zero(), 1}};
+    return {UnitMomentum{along, Eigen::Vector2d::Zero()},
+            UnitMomentum{Eigen::Vector3d::Zero(), Eigen::Vector2d::UnitX()}};
   }
   Eigen::Index least = 0;
   at.c.cwiseAbs().minCoeff(&least);
   const Eigen::Vector3d one = at.c.cross(Eigen::Vector3d::Unit(least)).normalized();
-  return {UnitMomentum{one, 0}, UnitMomentum{at.c.cross(one), 0}};
+  return {UnitMomentum{one}, UnitMomentum{at.c.cross(one)}};
 }
 
 VectorXd UnitMomenta::tangent(const UnitMomentum& at, const UnitMomentum& way) const {
   const Eigen::Vector3d across = way.c - at.c.dot(way.c) * at.c;
   VectorXd dp = (circle_ + slope_) * across.head(rank());
-  if (has_line()) dp += way.w * line_;
+  if (has_line()) dp += lines_ * way.w.head(lines());
   return dp;
 }
 
