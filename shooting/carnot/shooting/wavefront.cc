@@ -104,7 +104,11 @@ class FrontMaker {
 
   void run(FrontMesh& mesh) {
     mesh.length = options_.length;
-    section_ ? begin_section() : begin_whole();
+    if (section_) {
+      begin_section();
+    } else {
+      begin_whole();
+    }
     mesh.finished = make_first() && refined() && made_cusps(mesh) && cut_out() && made_times();
     if (mesh.finished) deliver(mesh);
     mesh.searches = cuts_.searches();

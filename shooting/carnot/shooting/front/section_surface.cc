@@ -15,8 +15,8 @@
 namespace carnot::internal {
 namespace {
 
-// The lattice: discs of rings about their middle. With half as many of each, the refined mesh of
-// the vehicle's front has 840 places that are not led back to the section; with these, none.
+// The lattice: discs of rings about their middle. With 24 discs of 8 rings of 12 places, 840 places
+// of the refined front of the vehicle are not led back to the section; with these, none.
 constexpr int kDiscs = 48;
 constexpr int kAround = 24;
 constexpr int kRings = 12;
