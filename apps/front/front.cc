@@ -18,9 +18,10 @@ at the length R. sphere: those that are shortest paths up to there, sewn along t
 their first conjugate points, or those of --order K, at lengths up to R; cut: where they stop being
 shortest, at lengths up to R. For scenes with two or three admissible directions, and any with two
 coordinates; where there are more than three coordinates, --fix momenta until a surface is left, and
-see a section. Of a front, a condition on the ends leaves one, too: --fix theta=phi, or theta=0.5. --cusps tells the cusp lines of a caustic, closed or open, its umbilics with their
-type, and swallowtails. What is left out is said. Columns of a .csv: q_NAME..., p0_NAME..., t_cut,
-t_conj, length, label; p0 is of speed 1.
+see a section. Of a front, a condition on the ends leaves one, too: --fix theta=phi, or theta=0.5.
+--cusps tells the cusp lines of a caustic, closed or open, its umbilics with their type, and
+swallowtails. What is left out is said. Columns of a .csv: q_NAME..., p0_NAME..., t_cut, t_conj, length,
+label; p0 is of speed 1.
 
 --what cut --momentum P0: the time at which the extremal from Q0 with p(0) = P0 stops being a shortest
 path, "cut_time"; its first conjugate time; and the momentum of another extremal that arrives at the

@@ -79,7 +79,7 @@ TEST_F(PictureFile, FailureCarriesTheMessageAndLeavesNothing) {
   std::ofstream(file("a.png")) << "old";
   Picture bad = line();
   bad.commands = "plot no_such_function(x)\n";
-  // More than a pipe holds: what gnuplot does not read must not kill the program.
+  // What comes after the error is not read, however long it is.
   for (int i = 0; i < 20000; ++i) bad.commands += "# a long comment after the error\n";
   try {
     write_picture(file("a.png"), bad);

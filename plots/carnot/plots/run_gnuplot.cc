@@ -44,7 +44,7 @@ class FileActions {
 
 // A process group of its own. Ctrl-C reaches every process of the terminal's group, and gnuplot
 // answers by a jump out of whatever it does: from within Cairo the jump leaves a lock behind that
-// gnuplot then waits for without end. Of 165 runs that were interrupted while they drew two hung.
+// gnuplot then waits for without end. Of 445 runs that were interrupted at random times nine hung.
 class OwnGroup {
  public:
   OwnGroup() {

@@ -30,8 +30,7 @@ struct SectionLattice {
   const std::vector<double>& from;
   const UnitMomenta& momenta;  // with the axes of their plane
   double length = 0;           // of the extremals
-  double conjugate =
-      0;  // the time: discs reach to what is conjugate by then; 0: they have radius 1
+  double conjugate = 0;        // discs reach to what is conjugate by then; 0: they have radius 1
   int threads = 0;
 };
 
