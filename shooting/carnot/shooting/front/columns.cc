@@ -150,6 +150,23 @@ std::vector<Column> even_columns(const UnitMomenta& momenta, double bound) {
   return columns;
 }
 
+std::vector<double> bounds_along(const Dynamics& dynamics,
+                                 const std::vector<double>& from,
+                                 const UnitMomenta& momenta,
+                                 double target,
+                                 const Eigen::Vector2d& axis,
+                                 int directions,
+                                 int doublings,
+                                 int threads) {
+  const std::vector<Eigen::Vector3d> all = momenta.directions(directions);
+  std::vector<double> bounds(2 * all.size(), 0);
+  parallel_for(2 * directions, thread_count(threads), [&](int k) {
+    const double side = k % 2 == 0 ? 1 : -1;
+    bounds[k] = bound_along(dynamics, from, momenta, target, {all[k / 2], side * axis}, doublings);
+  });
+  return bounds;
+}
+
 double conjugate_bound(const Dynamics& dynamics,
                        const std::vector<double>& from,
                        const UnitMomenta& momenta,
@@ -157,13 +174,9 @@ double conjugate_bound(const Dynamics& dynamics,
                        int threads) {
   constexpr int kRays = 16;
   constexpr int kDoublings = 8;
-  const std::vector<Eigen::Vector3d> directions = momenta.directions(kRays);
-  std::vector<double> least(2 * kRays, 0);
-  parallel_for(2 * kRays, thread_count(threads), [&](int k) {
-    const UnitMomentum side{directions[k / 2], {k % 2 == 0 ? 1.0 : -1.0, 0}};
-    least[k] = bound_along(dynamics, from, momenta, target, side, kDoublings);
-  });
-  return *std::max_element(least.begin(), least.end());
+  const std::vector<double> bounds = bounds_along(
+      dynamics, from, momenta, target, Eigen::Vector2d::UnitX(), kRays, kDoublings, threads);
+  return *std::max_element(bounds.begin(), bounds.end());
 }
 
 std::vector<Column> conjugate_columns(const ConjugateColumns& asked, ImageScale scale) {

@@ -45,6 +45,16 @@ double bound_along(const Dynamics& dynamics,
                    const UnitMomentum& side,
                    int doublings);
 
+// The same along an axis, to both sides of so many directions.
+std::vector<double> bounds_along(const Dynamics& dynamics,
+                                 const std::vector<double>& from,
+                                 const UnitMomenta& momenta,
+                                 double target,
+                                 const Eigen::Vector2d& axis,
+                                 int directions,
+                                 int doublings,
+                                 int threads);
+
 // The least |w| beyond which all extremals are conjugate at `target`; infinite where there is none.
 double conjugate_bound(const Dynamics& dynamics,
                        const std::vector<double>& from,

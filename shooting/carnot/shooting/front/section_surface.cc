@@ -189,19 +189,10 @@ Eigen::Matrix2d plane_axes(const Dynamics& dynamics,
   constexpr int kAngles = 12;
   constexpr int kHalvings = 5;
   constexpr int kDirections = 8;
-  const std::vector<Eigen::Vector3d> directions = momenta.directions(kDirections);
   // How far it is out at an angle, to either side: the middle one of all directions.
   const auto width = [&](double angle) {
-    std::vector<double> bounds(2 * kDirections);
-    parallel_for(2 * kDirections, thread_count(threads), [&](int k) {
-      const double side = k % 2 == 0 ? 1 : -1;
-      bounds[k] = bound_along(dynamics,
-                              from,
-                              momenta,
-                              conjugate,
-                              {directions[k / 2], side * at_angle(angle)},
-                              kDoublings);
-    });
+    std::vector<double> bounds = bounds_along(
+        dynamics, from, momenta, conjugate, at_angle(angle), kDirections, kDoublings, threads);
     std::nth_element(bounds.begin(), bounds.begin() + kDirections, bounds.end());
     return std::min(bounds[kDirections], std::ldexp(1, kDoublings) / conjugate);
   };
