@@ -119,10 +119,16 @@ class LatticeCutter {
     }
   }
   void add(const Tetrahedron& corners) {
-    // Where the flow fails nothing is known, and half a turn away the condition jumps.
-    const bool known = std::all_of(corners.begin(), corners.end(), [&](int i) {
-      return std::abs(values_[i]) < 0.5 * section_.farthest();
-    });
+    double least = values_[corners[0]];
+    double most = least;
+    bool known = true;  // where the flow fails nothing is
+    for (const int i : corners) {
+      known = known && std::isfinite(values_[i]);
+      least = std::min(least, values_[i]);
+      most = std::max(most, values_[i]);
+    }
+    // Values further apart than half a turn have a jump between them and no zero.
+    known = known && most - least < section_.farthest();
     if (known) tetrahedra_.push_back(corners);
   }
 
