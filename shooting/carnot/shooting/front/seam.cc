@@ -75,7 +75,7 @@ class Border {
 };
 
 // A fan in the place of each triangle with new vertices on a border edge.
-void split(const std::map<Edge, std::map<double, int>>& on_edge, Surface& surface) {
+void split(const std::map<Edge, std::multimap<double, int>>& on_edge, Surface& surface) {
   std::vector<std::array<int, 3>> triangles;
   std::vector<std::array<int, 3>> work(surface.triangles.rbegin(), surface.triangles.rend());
   while (!work.empty()) {
@@ -150,7 +150,7 @@ std::vector<int> sew(const std::vector<BorderVertex>& border,
   }
   const Border sides(surface);
   const int first = static_cast<int>(surface.vertices.size());
-  std::map<Edge, std::map<double, int>> on_edge;
+  std::map<Edge, std::multimap<double, int>> on_edge;
   std::vector<std::pair<int, int>> pairs;
   std::vector<int> of;
   std::vector<SurfaceVertex> added;
@@ -166,12 +166,9 @@ std::vector<int> sew(const std::vector<BorderVertex>& border,
       pairs.emplace_back(one.vertex, same);
       continue;
     }
-    // Two partners may be as good as one place; then they follow each other.
-    auto& chain = on_edge[foot.edge];
-    double part = foot.part;
-    while (chain.contains(part)) part = std::nextafter(part, 1.0);
+    // Two partners may be as good as one place, or beyond one end; then they follow each other.
     const int vertex = first + static_cast<int>(added.size());
-    chain[part] = vertex;
+    on_edge[foot.edge].emplace(foot.part, vertex);
     added.push_back({one.partner, {}});
     of.push_back(one.vertex);
     pairs.emplace_back(one.vertex, vertex);
