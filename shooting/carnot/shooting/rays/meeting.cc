@@ -83,15 +83,24 @@ class MeetingEquations {
   [[nodiscard]] double error() const { return error_; }
 
   // Newton's step: p1 and t.
-  void step(Rival& rival) const {
-    const auto n = residual_.size() - 1;
-    const VectorXd step = least_squares(jacobian_, residual_, kFamily);
+  void step(Rival& rival) const { take_away(residual_, rival); }
+
+  // What takes the equations back to zero when the ray's own end moves by `own`.
+  void carry(const VectorXd& own, Rival& rival) const {
+    VectorXd change = VectorXd::Zero(residual_.size());
+    change.head(own.size()) = -units_->displacement(own);
+    take_away(change, rival);
+  }
+
+ private:
+  void take_away(const VectorXd& residual, Rival& rival) const {
+    const auto n = residual.size() - 1;
+    const VectorXd step = least_squares(jacobian_, residual, kFamily);
     const VectorXd dp = units_->momenta(step.head(n));
     for (Eigen::Index j = 0; j < n; ++j) rival.p[j] -= dp[j];
     rival.t -= step[n];
   }
 
- private:
   std::optional<Units> units_;
   MatrixXd jacobian_;
   VectorXd residual_;
@@ -164,75 +173,118 @@ bool polish_meeting(const Ray& ray, long steps, Rival& rival) {
   return solve(ray, {}, steps, rival);
 }
 
+std::optional<Rival> carried(const Ray& ray,
+                             const Rival& rival,
+                             const std::vector<double>& to,
+                             long steps) {
+  MeetingEquations equations;
+  const auto own = ray.end(rival.t, steps);
+  if (!own || !equations.evaluate(ray, rival, {}, steps)) return std::nullopt;
+  const auto n = static_cast<Eigen::Index>(to.size());
+  VectorXd change(n);
+  for (Eigen::Index j = 0; j < n; ++j) change[j] = to[j] - ray.p()[j];
+  VectorXd moved = own->tangent.topRows(n) * change;
+  for (std::size_t j = 0; j < rival.signs.size(); ++j) moved[j] *= rival.signs[j];
+  Rival next = rival;
+  equations.carry(moved, next);
+  return next;
+}
+
 namespace {
 
-// The branch that leaves the ray at a conjugate time, by how far it is from it along a direction.
+// The branch that leaves the ray at a conjugate time, point after point. Where a second family of
+// neighbours is nearly conjugate, too, the branch bends towards that: so it is followed along
+// itself, in the direction of its last two points.
 class Branch {
  public:
   Branch(const Ray& ray, const VectorXd& direction, double conjugate_time)
-      : ray_(ray),
+      : ray_(&ray),
         direction_(direction),
         rival_{ray.p(), std::vector<double>(ray.p().size(), 0.0), conjugate_time} {}
 
-  // Follows it to `value`, from where it is. Both p and t are nearly linear in that.
-  bool go_to(double value, long steps) {
+  // To the point that is further by `length` along the direction, which is then that of this step.
+  // False, and nothing moves, where there is none nearby.
+  bool advance(double length, long steps) {
+    constexpr double kStraight = 0.9;  // the least cosine between two steps
     Rival next = rival_;
-    for (std::size_t j = 0; j < next.p.size(); ++j) {
-      const double slope = value_ > 0 ? (rival_.p[j] - ray_.p()[j]) / value_ : direction_[j];
-      next.p[j] = ray_.p()[j] + value * slope;
-    }
-    if (!solve(ray_, {value, direction_}, steps, next)) return false;
+    if (!solve_at(length, steps, next)) return false;
+    VectorXd step = momentum_of(next) - momentum_of(rival_);
+    const double moved = step.norm();
+    step /= moved;
+    if (!(step.dot(direction_) > kStraight)) return false;
+    direction_ = step;
+    later_ = (next.t - rival_.t) / moved;
+    length_ += moved;
     rival_ = next;
-    value_ = value;
     return true;
   }
+  // A point between this one and that which is further by `length`.
+  [[nodiscard]] std::optional<Rival> at(double length, long steps) const {
+    Rival point = rival_;
+    if (!solve_at(length, steps, point)) return std::nullopt;
+    return point;
+  }
   [[nodiscard]] const Rival& rival() const { return rival_; }
-  [[nodiscard]] double excess() const { return excess_of(ray_, rival_); }
+  [[nodiscard]] double excess() const { return excess_of(*ray_, rival_); }
+  [[nodiscard]] double length() const { return length_; }
 
  private:
-  const Ray& ray_;
-  const VectorXd& direction_;
+  [[nodiscard]] static VectorXd momentum_of(const Rival& rival) {
+    return Eigen::Map<const VectorXd>(rival.p.data(), static_cast<Eigen::Index>(rival.p.size()));
+  }
+  [[nodiscard]] bool solve_at(double length, long steps, Rival& point) const {
+    const double here = direction_.dot(momentum_of(point) - momentum_of({ray_->p(), {}}));
+    for (std::size_t j = 0; j < point.p.size(); ++j) point.p[j] += length * direction_[j];
+    point.t += length * later_;
+    return solve(*ray_, {here + length, direction_}, steps, point);
+  }
+
+  const Ray* ray_;
+  VectorXd direction_;
   Rival rival_;
-  double value_ = 0;
+  double later_ = 0;   // dt by dp along the direction
+  double length_ = 0;  // from the ray
 };
 
-// Between two values of the branch where the excess has different signs: goes to where it is zero.
-// The equations of a meeting would be badly conditioned there. Near the ray the excess grows as the
-// third power; but for that it is nearly linear.
-bool find_zero(double low, double at_low, double high, double at_high, long steps, Branch& branch) {
-  constexpr double kEnough = 1e-13;  // relative
-  bool found = true;
-  const auto scaled = [](double excess, double value) { return excess / (value * value * value); };
-  const auto excess_at = [&](double value) {
-    found = branch.go_to(value, steps);
-    return found ? std::optional(scaled(branch.excess(), value)) : std::nullopt;
+// Between a point of the branch and the next one, which is further by `length`, the excess changes
+// its sign: goes to where it is zero. The equations of a meeting would be badly conditioned there.
+std::optional<Rival> find_zero(
+    const Ray& ray, const Branch& branch, double length, double excess, long steps) {
+  constexpr double kEnough = 1e-13;  // of what was passed
+  std::optional<Rival> found;
+  const auto excess_at = [&](double part) {
+    found = branch.at(part * length, steps);
+    return found ? std::optional(excess_of(ray, *found)) : std::nullopt;
   };
-  illinois(low, scaled(at_low, low), high, scaled(at_high, high), kEnough * high, excess_at);
+  illinois(0, branch.excess(), 1, excess, kEnough, excess_at);
   return found;
 }
 
 // On one side.
 std::optional<Meeting> meet_neighbour(
     const Ray& ray, const VectorXd& direction, double conjugate_time, double expected, long steps) {
-  constexpr double kBefore = 0.6;  // of what is expected
-  constexpr double kFirst = 1e-3;  // of |p|: what is nearer is conjugate to 1e-6 of the time
+  constexpr double kBefore = 0.6;     // of what is expected
+  constexpr double kFirst = 1e-3;     // of |p|: what is nearer is conjugate to 1e-6 of the time
+  constexpr double kShortest = 1e-4;  // of |p|: steps are halved until then
   constexpr double kGrowth = 1.4;
   constexpr double kFarthest = 1;
   const double size = norm(ray.p());
   Branch branch(ray, direction, conjugate_time);
-  double before = 0;
-  double excess_before = 0;
-  for (double part = kFirst; part < kFarthest; part *= kGrowth) {
-    const double value = part * size;
-    if (!branch.go_to(value, steps)) return std::nullopt;
-    const double excess = branch.excess();
-    if (before > 0 && excess * excess_before < 0) {
-      if (!find_zero(before, excess_before, value, excess, steps, branch)) return std::nullopt;
-      return Meeting{branch.rival(), 0};
+  double length = kFirst * size;
+  while (branch.length() < kFarthest * size && length > kShortest * size) {
+    Branch next = branch;
+    if (!next.advance(length, steps)) {
+      length *= 0.5;
+      continue;
     }
-    if (before == 0) part = std::max(part, kBefore / kGrowth * expected / size);
-    before = value;
-    excess_before = excess;
+    if (branch.length() > 0 && next.excess() * branch.excess() < 0) {
+      auto zero = find_zero(ray, branch, length, next.excess(), steps);
+      if (!zero) return std::nullopt;
+      return Meeting{std::move(*zero), 0};
+    }
+    length *= kGrowth;
+    if (branch.length() == 0) length = std::max(length, kBefore * expected - next.length());
+    branch = next;
   }
   return std::nullopt;
 }

@@ -45,11 +45,21 @@ std::optional<Meeting> meet(const Ray& ray, Rival rival, long steps);
 // The first meeting shortly before a conjugate time. Near the edge of the cut locus the partner is
 // a neighbour, and meets the ray so shortly before that no search tells. It lies on the branch of
 // extremals that leaves the ray at the conjugate time along what the tangent flow does not move
-// there. The branch is followed to both sides, by how far it is along that, until it is neither
-// longer nor shorter; quickly to near where it is expected, where a distance of both momenta is.
+// there. The branch is followed to both sides, along itself, until it is neither longer nor
+// shorter; quickly to near where it is expected, where a distance of both momenta is. Of 54 such
+// meetings on the vehicle, where two families are nearly conjugate at once, 48 are found; by its
+// distance along the first direction the branch led to 23.
 std::optional<Meeting> meet_neighbours(const Ray& ray, double conjugate_time, double expected = 0);
 
 // Newton's method alone, for a rival that is near already; `steps` are enough.
 bool polish_meeting(const Ray& ray, long steps, Rival& rival);
+
+// Where a rival that meets the ray goes, to first order, when the ray gets another momentum: the
+// derivative of the equations above by p0, with d kept. Nothing where a flow fails. Cost: two
+// tangent flows.
+std::optional<Rival> carried(const Ray& ray,
+                             const Rival& rival,
+                             const std::vector<double>& to,
+                             long steps);
 
 }  // namespace carnot::internal
