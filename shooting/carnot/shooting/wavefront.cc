@@ -5,6 +5,8 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <iterator>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -295,12 +297,13 @@ class FrontMaker {
     });
   }
 
-  bool make(int first, const std::vector<Between>& parents) {
+  // Of places on a border the cut times are found already.
+  bool make(int first, const std::vector<Between>& parents, std::vector<CutValue> found = {}) {
     settle(first);
     if (needs_cuts()) {
       std::vector<std::pair<int, int>> pairs;
       for (const Between& place : parents) pairs.emplace_back(place.a, place.b);
-      if (!cuts_.add_between(momenta_from(first), pairs)) return false;
+      if (!cuts_.add_between(momenta_from(first), pairs, std::move(found))) return false;
     }
     return make_images(first);
   }
@@ -333,27 +336,58 @@ class FrontMaker {
     });
   }
 
-  // The time that tells inside from outside, at a momentum beside vertex `near`.
-  [[nodiscard]] CutValue value_at(const std::vector<double>& p, int near) {
-    if (needs_cuts()) return cuts_.beside(p, near);
-    CutValue value;
-    value.t = conjugate_time(Ray(dynamics_, from_, p), horizon_, options_.order);
-    return value;
+  // The cut time at a place on an edge. The known places on either side of it lead there, and it
+  // becomes one of them where it has a partner. Others lead nowhere, and beside an abnormal
+  // extremal conjugate times may be wrong.
+  double cut_time_at(double part, std::vector<double> p, std::map<double, CutRay>& known) {
+    auto after = known.lower_bound(part);
+    if (after == known.end()) --after;
+    const auto before = after == known.begin() ? after : std::prev(after);
+    CutRay found{std::move(p), {}};
+    found.value = cuts_.beside(found.p, before->second, after->second);
+    const double t = found.value.t;
+    const bool leads = found.value.known && !found.value.partner.p.empty();
+    if (leads) known.insert_or_assign(part, std::move(found));
+    return t;
   }
 
-  // The place on an edge where the time is the length.
-  void locate(Between& place) {
+  // Finds the place on an edge where the time is the length and, of a sphere, the value there.
+  CutValue locate(Between& place) {
     constexpr double kEnough = 1e-13;
     const double wanted = 1 / options_.length;
     const auto time = [&](int i) { return needs_cuts() ? cuts_[i].t : times_[i]; };
+    std::map<double, CutRay> known;
+    if (needs_cuts()) known = {{0, cuts_.cut_ray(place.a)}, {1, cuts_.cut_ray(place.b)}};
     const auto rate_at = [&](double part) {
       const SurfaceVertex trial = surface_.between({place.a, place.b, part});
-      const int near = std::abs(part) < 0.5 && std::isfinite(time(place.a)) ? place.a : place.b;
-      const double t = value_at(momenta_.momentum(trial.place), near).t;
+      const std::vector<double> p = momenta_.momentum(trial.place);
+      const double t = needs_cuts()
+                           ? cut_time_at(part, p, known)
+                           : conjugate_time(Ray(dynamics_, from_, p), horizon_, options_.order);
       return std::optional(1 / t - wanted);
     };
-    place.part =
-        illinois(0, 1 / time(place.a) - wanted, 1, 1 / time(place.b) - wanted, kEnough, rate_at);
+    constexpr double kMet = 1e-6;  // relative: what is further off is a jump
+    constexpr int kHalvings = 3;
+    const double inside = 1 / time(place.a) - wanted;
+    double outside = 1 / time(place.b) - wanted;
+    double end = 1;
+    double found = outside;
+    const auto watched = [&](double part) {
+      const auto rate = rate_at(part);
+      found = rate.value_or(found);
+      return rate;
+    };
+    place.part = illinois(0, inside, end, outside, kEnough, watched);
+    // Where the edge crosses an abnormal extremal times jump up, and the border is before that.
+    for (int i = 0; needs_cuts() && i < kHalvings && !(std::abs(found) <= kMet * wanted); ++i) {
+      end = 0.5 * place.part;
+      const auto rate = watched(end);
+      if (!rate || *rate <= 0) break;
+      outside = *rate;
+      place.part = illinois(0, inside, end, outside, kEnough, watched);
+    }
+    const auto last = known.find(place.part);
+    return last == known.end() ? CutValue{} : std::move(last->second.value);
   }
 
   // Leaves the inside, with its border and, of a sphere, sewn.
@@ -367,16 +401,18 @@ class FrontMaker {
       inside[i] = is_inside(i);
       open_at_bound_ = open_at_bound_ || (inside[i] && border[i]);
     }
+    std::vector<CutValue> found;
     clip(
         inside,
         [&](std::vector<Between>& places) {
+          found.resize(places.size());
           for_all(0, static_cast<int>(places.size()), [&](int k) {
-            if (go_on()) locate(places[k]);
+            if (go_on()) found[k] = locate(places[k]);
           });
         },
         [&](int first, const std::vector<Between>& parents) {
           border_ = first;
-          return make(first, parents);
+          return make(first, parents, found);
         },
         surface_);
     return go_on();

@@ -30,6 +30,10 @@ bool same_kind(const Rival& a, const Rival& b) {
   return a.offset == b.offset && a.signs == b.signs;
 }
 
+bool has_partner(const CutValue& value) {
+  return value.known && !value.at_conjugate && std::isfinite(value.t);
+}
+
 }  // namespace
 
 bool CutValues::go_on() {
@@ -121,13 +125,23 @@ Rival CutValues::moved(const Way& from, const Way& to, const Rival& rival) const
 // Takes the rival of a ray to another one, in as many steps as Newton's method needs.
 bool CutValues::follow(const Way& from, const Way& to, int halvings, Rival& rival) const {
   constexpr double kItself = 1e-6;  // of |p|: the ray is a rival of its own, which is not meant
+  constexpr double kSooner = 0.5;   // of the time: what is carried to before that is far away
   const Ray ray(dynamics_, from_, to.p);
-  const Rival guess = moved(from, to, rival);
-  Rival next = guess;
   const double size = size_of(from.p);
-  if (polish_meeting(ray, ray.enough_steps(guess.t), next) && next.t > 0 &&
-      apart(next.p, guess.p) <= kNear * size && apart(next.p, to.p) > kItself * size) {
+  const auto leads = [&](const Rival& guess) {
+    Rival next = guess;
+    if (!polish_meeting(ray, ray.enough_steps(guess.t), next) || !(next.t > 0) ||
+        apart(next.p, guess.p) > kNear * size || apart(next.p, to.p) <= kItself * size) {
+      return false;
+    }
     rival = std::move(next);
+    return true;
+  };
+  if (leads(moved(from, to, rival))) return true;
+  const Ray before(dynamics_, from_, from.p);
+  const auto first = carried(before, rival, to.p, before.enough_steps(rival.t));
+  if (first && apart(first->p, rival.p) <= kNear * size && first->t > kSooner * rival.t &&
+      leads(*first)) {
     return true;
   }
   if (halvings == 0) return false;
@@ -138,31 +152,37 @@ bool CutValues::follow(const Way& from, const Way& to, int halvings, Rival& riva
   return follow(from, middle, halvings - 1, rival) && follow(middle, to, halvings - 1, rival);
 }
 
-// Whether the partner of ray j leads to one of this ray that is met before value.t.
-bool CutValues::meets(const Ray& ray, int j, int halvings, CutValue& value) const {
-  const CutValue& neighbour = values_[j];
-  if (!neighbour.known || neighbour.at_conjugate || std::isinf(neighbour.t)) return false;
-  if (is_at_edge(momenta_[j], neighbour.partner.p, neighbour.t, neighbour.conjugate)) return false;
-  Rival rival = neighbour.partner;
-  rival.t = neighbour.t;
-  const Way from{momenta_[j], neighbour.conjugate};
-  if (!follow(from, {ray.p(), value.conjugate}, halvings, rival)) return false;
+CutValues::Led CutValues::lead(const Ray& ray,
+                               const Neighbour& neighbour,
+                               int halvings,
+                               AtEdge at_edge,
+                               CutValue& value) const {
+  const CutValue& its = *neighbour.value;
+  const auto is_left = [&](const std::vector<double>& p, const Rival& rival, double conjugate) {
+    return at_edge == AtEdge::kLeft && is_at_edge(p, rival.p, rival.t, conjugate);
+  };
+  Rival rival = its.partner;
+  rival.t = its.t;
+  if (is_left(*neighbour.p, rival, its.conjugate)) return Led::kNowhere;
+  const Way from{*neighbour.p, its.conjugate};
+  if (!follow(from, {ray.p(), value.conjugate}, halvings, rival)) return Led::kNowhere;
   const long steps = ray.enough_steps(rival.t);
-  if (rival.t > (1 + kSameTime) * value.conjugate || !(rival.t < (1 - kSameTime) * value.t)) {
-    return false;
+  if (rival.t > options_.horizon || rival.t > (1 + kSameTime) * value.conjugate ||
+      !(rival.t < (1 - kSameTime) * value.t)) {
+    return Led::kLater;
   }
-  if (is_at_edge(ray.p(), rival.p, rival.t, value.conjugate)) return false;
-  if (same_path(ray, rival, steps)) return false;
+  if (is_left(ray.p(), rival, value.conjugate)) return Led::kNowhere;
+  if (same_path(ray, rival, steps)) return Led::kNowhere;
   value.known = true;
   value.t = rival.t;
   value.at_conjugate = false;
   value.partner = std::move(rival);
-  return true;
+  return Led::kEarlier;
 }
 
 CutValue CutValues::led_to(const std::vector<double>& p,
                            double conjugate,
-                           const std::vector<int>& neighbours) const {
+                           const std::vector<Neighbour>& neighbours) const {
   constexpr int kHalvings = 4;
   constexpr double kNeighbours = 0.9;   // what is turned by less may be met as a neighbour,
   constexpr double kBefore = 1.3;       // where that is so long before the conjugate time
@@ -174,55 +194,78 @@ CutValue CutValues::led_to(const std::vector<double>& p,
   bool beside_conjugate = false;
   double near_edge = 0;  // how far a neighbour and its partner are apart, where they are neighbours
   bool beside_none = false;
-  for (const int j : neighbours) {
-    const CutValue& neighbour = values_[j];
-    if (!neighbour.known) continue;
-    beside_conjugate = beside_conjugate || neighbour.at_conjugate;
-    if (!neighbour.partner.p.empty() && neighbour.conjugate < kBefore * neighbour.t &&
-        turned(momenta_[j], neighbour.partner.p) < kNeighbours) {
-      near_edge = apart(neighbour.partner.p, momenta_[j]);
+  bool later = false;    // some neighbour leads to what is too late to count,
+  bool nowhere = false;  // or nowhere
+  for (const Neighbour& neighbour : neighbours) {
+    const CutValue& its = *neighbour.value;
+    if (!its.known) continue;
+    beside_conjugate = beside_conjugate || its.at_conjugate;
+    beside_none = beside_none || std::isinf(its.t);
+    if (!has_partner(its)) continue;
+    if (its.conjugate < kBefore * its.t && turned(*neighbour.p, its.partner.p) < kNeighbours) {
+      near_edge = apart(its.partner.p, *neighbour.p);
     }
-    beside_none = beside_none || std::isinf(neighbour.t);
-    const bool same = value.known && same_kind(value.partner, neighbour.partner) &&
-                      apart(value.partner.p, neighbour.partner.p) < kSamePartner * size_of(p);
-    if (!same) (void)meets(own, j, kHalvings, value);
+    const bool same = value.known && same_kind(value.partner, its.partner) &&
+                      apart(value.partner.p, its.partner.p) < kSamePartner * size_of(p);
+    if (same) continue;
+    const Led led = lead(own, neighbour, kHalvings, AtEdge::kLeft, value);
+    later = later || led == Led::kLater;
+    nowhere = nowhere || led == Led::kNowhere;
   }
   if (value.known) return value;
-  if (near_edge > 0 && std::isfinite(conjugate)) {
+  // Cut times have no jumps. So where all that is known nearby is too late to count, the ray has no
+  // cut before it is conjugate, but for its neighbours.
+  const bool nothing_before = (later || beside_none) && !nowhere;
+  const bool at_border = beside_conjugate && (later || nowhere);  // of what is cut where conjugate
+  if (std::isinf(conjugate)) {
+    value.known = beside_none || nothing_before;
+    return value;
+  }
+  if (near_edge > 0 || nothing_before || at_border) {
     if (auto meeting = meet_neighbours(own, conjugate, near_edge)) {
       value.known = true;
       value.t = meeting->rival.t;
       value.partner = std::move(meeting->rival);
+      return value;
+    }
+  }
+  if (near_edge > 0) {
+    for (const Neighbour& neighbour : neighbours) {
+      if (has_partner(*neighbour.value))
+        (void)lead(own, neighbour, kHalvings, AtEdge::kAllowed, value);
     }
     return value;
   }
-  // Where a neighbour has none up to the horizon, so has this one, unless it is conjugate before.
-  const bool is_conjugate = std::isfinite(conjugate);
-  value.known = is_conjugate ? beside_conjugate : beside_none;
-  value.at_conjugate = value.known && is_conjugate;
-  if (value.at_conjugate) value.t = conjugate;
+  value.known = value.at_conjugate = beside_conjugate;
+  if (value.known) value.t = conjugate;
   return value;
+}
+
+std::vector<CutValues::Neighbour> CutValues::those(const std::vector<int>& neighbours) const {
+  std::vector<Neighbour> list;
+  for (const int j : neighbours) list.push_back(neighbour(j));
+  return list;
 }
 
 CutValue CutValues::led_to_or_searched(const std::vector<double>& p,
                                        double conjugate,
-                                       const std::vector<int>& neighbours) {
+                                       const std::vector<Neighbour>& neighbours) {
   CutValue value = led_to(p, conjugate, neighbours);
   return value.known ? value : searched(p);
 }
 
 bool CutValues::add_between(const std::vector<std::vector<double>>& momenta,
-                            const std::vector<std::pair<int, int>>& parents) {
-  const std::size_t first = values_.size();
-  std::vector<CutValue> made(momenta.size());
+                            const std::vector<std::pair<int, int>>& parents,
+                            std::vector<CutValue> found) {
+  found.resize(momenta.size());
   parallel_for(static_cast<int>(momenta.size()), thread_count(options_.threads), [&](int i) {
-    if (!go_on()) return;
+    if (found[i].known || !go_on()) return;
     const double conjugate = conjugate_time(Ray(dynamics_, from_, momenta[i]), options_.horizon);
-    made[i] = led_to_or_searched(momenta[i], conjugate, {parents[i].first, parents[i].second});
+    found[i] =
+        led_to_or_searched(momenta[i], conjugate, those({parents[i].first, parents[i].second}));
   });
   momenta_.insert(momenta_.end(), momenta.begin(), momenta.end());
-  values_.resize(first);
-  values_.insert(values_.end(), made.begin(), made.end());
+  values_.insert(values_.end(), found.begin(), found.end());
   return !stopped_;
 }
 
@@ -241,9 +284,15 @@ void CutValues::add_partners(const std::vector<int>& of) {
   }
 }
 
-CutValue CutValues::beside(const std::vector<double>& p, int i) {
+CutValue CutValues::beside(const std::vector<double>& p, const CutRay& a, const CutRay& b) {
   const double conjugate = conjugate_time(Ray(dynamics_, from_, p), options_.horizon);
-  return led_to_or_searched(p, conjugate, {i});
+  // One that has none up to the horizon tells less than one that has.
+  std::vector<Neighbour> neighbours;
+  for (const CutRay* one : {&a, &b}) {
+    if (std::isfinite(one->value.t)) neighbours.push_back({&one->p, &one->value});
+  }
+  if (neighbours.empty()) neighbours.push_back({&a.p, &a.value});
+  return led_to_or_searched(p, conjugate, neighbours);
 }
 
 bool CutValues::add(const std::vector<std::vector<double>>& momenta,
@@ -297,7 +346,7 @@ bool CutValues::spread(const std::vector<std::vector<int>>& neighbours) {
     std::vector<CutValue> made(layer.size());
     parallel_for(static_cast<int>(layer.size()), thread_count(options_.threads), [&](int k) {
       const int i = layer[k];
-      if (go_on()) made[k] = led_to(momenta_[i], values_[i].conjugate, neighbours[i]);
+      if (go_on()) made[k] = led_to(momenta_[i], values_[i].conjugate, those(neighbours[i]));
     });
     if (stopped_) return false;
     for (std::size_t k = 0; k < layer.size(); ++k) values_[layer[k]] = std::move(made[k]);
@@ -315,7 +364,9 @@ bool CutValues::improve(int i, const std::vector<int>& neighbours, CutValue& val
         !value.at_conjugate && std::isfinite(value.t) && !neighbour.at_conjugate &&
         same_kind(value.partner, neighbour.partner) &&
         apart(value.partner.p, neighbour.partner.p) < kSamePartner * size_of(momenta_[i]);
-    if (!same && meets(own, j, 1, value)) better = true;
+    if (same || !has_partner(neighbour)) continue;
+    const Led led = lead(own, this->neighbour(j), 1, AtEdge::kLeft, value);
+    better = better || led == Led::kEarlier;
   }
   return better;
 }

@@ -3,10 +3,18 @@
 // A few searches (cut_time.h) tell the cut time and the partner of some rays. A neighbour has a
 // partner nearby, to which Newton's method leads in three or four steps, some hundred times as
 // fast. It begins with a partner that is moved along the line of momenta as the ray is, towards
-// zero or away from it, and with a time in proportion to conjugate times. What no neighbour leads
-// to is searched, and where a neighbour promises a partner that is met earlier it is taken. All
-// goes in rounds that only read what the round before has left, so the result does not depend on
-// the number of threads.
+// zero or away from it, and with a time in proportion to conjugate times. Where that fails it
+// begins with one that is carried by the derivative of the equations, and then goes in smaller
+// steps. What no neighbour leads to is searched, and where a neighbour promises a partner that is
+// met earlier it is taken. Beyond the horizon nothing is followed: there a ray has no cut. All goes
+// in rounds that only read what the round before has left, so the result does not depend on the
+// number of threads.
+//
+// Searches are what costs. On the vehicle's sphere of length 1 with p_theta = 0 they were 207 when
+// only moved partners were tried. Carried ones leave 115; with places on an edge that lead to the
+// next ones, and neighbours of each other that are followed where their branch is not found, 45 are
+// left; with branches that may bend (rays/meeting.h), and what is later than the horizon or the
+// conjugate time, 28. It takes a ninth of the time.
 #pragma once
 
 #include <atomic>
@@ -26,6 +34,12 @@ struct CutValue {
   double conjugate = 0;  // the first conjugate time; infinite where there is none
   bool at_conjugate = false;
   Rival partner;  // where the cut is no conjugate time
+};
+
+// A ray with its value.
+struct CutRay {
+  std::vector<double> p;
+  CutValue value;
 };
 
 struct CutValuesOptions {
@@ -58,26 +72,36 @@ class CutValues {
   bool add(const std::vector<std::vector<double>>& momenta,
            const std::vector<std::vector<int>>& neighbours,
            const std::vector<int>& seeds);
-  // Adds rays one of whose two neighbours, known ones, leads to each.
+  // Adds rays one of whose two neighbours, known ones, leads to each. Of some the values may be
+  // known already; `found` is empty where there are none.
   bool add_between(const std::vector<std::vector<double>>& momenta,
-                   const std::vector<std::pair<int, int>>& parents);
+                   const std::vector<std::pair<int, int>>& parents,
+                   std::vector<CutValue> found = {});
   // Adds the partners of these rays, which are met at the same times.
   void add_partners(const std::vector<int>& of);
-  // The value of a ray beside number i; nothing is added.
-  [[nodiscard]] CutValue beside(const std::vector<double>& p, int i);
+  [[nodiscard]] CutRay cut_ray(int i) const { return {momenta_[i], values_[i]}; }
+  // The value of a ray between two others; nothing is added.
+  [[nodiscard]] CutValue beside(const std::vector<double>& p, const CutRay& a, const CutRay& b);
   // Searches so many of these rays once more, spread evenly, and takes what is less. How many were.
   int check(int count, const std::vector<std::vector<int>>& neighbours, const std::vector<int>& of);
 
  private:
   [[nodiscard]] Ray ray(int i) const { return {dynamics_, from_, momenta_[i]}; }
   [[nodiscard]] CutValue searched(const std::vector<double>& p);
+  // A ray that leads to others.
+  struct Neighbour {
+    const std::vector<double>* p;
+    const CutValue* value;
+  };
+  [[nodiscard]] Neighbour neighbour(int j) const { return {&momenta_[j], &values_[j]}; }
+  [[nodiscard]] std::vector<Neighbour> those(const std::vector<int>& neighbours) const;
   // What its neighbours lead to, which is unknown where they lead to nothing.
   [[nodiscard]] CutValue led_to(const std::vector<double>& p,
                                 double conjugate,
-                                const std::vector<int>& neighbours) const;
+                                const std::vector<Neighbour>& neighbours) const;
   [[nodiscard]] CutValue led_to_or_searched(const std::vector<double>& p,
                                             double conjugate,
-                                            const std::vector<int>& neighbours);
+                                            const std::vector<Neighbour>& neighbours);
   [[nodiscard]] double turned(const std::vector<double>& a, const std::vector<double>& b) const;
   // Whether a ray and its partner, which meet at t, are neighbours.
   [[nodiscard]] bool is_at_edge(const std::vector<double>& p,
@@ -91,7 +115,17 @@ class CutValues {
   };
   [[nodiscard]] Rival moved(const Way& from, const Way& to, const Rival& rival) const;
   bool follow(const Way& from, const Way& to, int halvings, Rival& rival) const;
-  bool meets(const Ray& ray, int j, int halvings, CutValue& value) const;
+  // Where the partner of a neighbour leads: to a meeting that is earlier than the value, which it
+  // becomes; to one that is later, or beyond the horizon; nowhere that is found.
+  enum class Led { kEarlier, kLater, kNowhere };
+  // Two paths that are neighbours of each other meet where the equations are badly conditioned, and
+  // are left to another method unless they are allowed.
+  enum class AtEdge { kLeft, kAllowed };
+  Led lead(const Ray& ray,
+           const Neighbour& neighbour,
+           int halvings,
+           AtEdge at_edge,
+           CutValue& value) const;
   bool search_some(const std::vector<int>& of);
   bool spread(const std::vector<std::vector<int>>& neighbours);
   bool relax(const std::vector<std::vector<int>>& neighbours);
