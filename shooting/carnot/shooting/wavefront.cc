@@ -369,22 +369,20 @@ class FrontMaker {
     constexpr double kMet = 1e-6;  // relative: what is further off is a jump
     constexpr int kHalvings = 3;
     const double inside = 1 / time(place.a) - wanted;
-    double outside = 1 / time(place.b) - wanted;
-    double end = 1;
+    const double outside = 1 / time(place.b) - wanted;
     double found = outside;
     const auto watched = [&](double part) {
       const auto rate = rate_at(part);
       found = rate.value_or(found);
       return rate;
     };
-    place.part = illinois(0, inside, end, outside, kEnough, watched);
+    place.part = illinois(0, inside, 1, outside, kEnough, watched);
     // Where the edge crosses an abnormal extremal times jump up, and the border is before that.
     for (int i = 0; needs_cuts() && i < kHalvings && !(std::abs(found) <= kMet * wanted); ++i) {
-      end = 0.5 * place.part;
-      const auto rate = watched(end);
+      const double middle = 0.5 * place.part;
+      const auto rate = watched(middle);
       if (!rate || *rate <= 0) break;
-      outside = *rate;
-      place.part = illinois(0, inside, end, outside, kEnough, watched);
+      place.part = illinois(0, inside, middle, *rate, kEnough, watched);
     }
     const auto last = known.find(place.part);
     return last == known.end() ? CutValue{} : std::move(last->second.value);

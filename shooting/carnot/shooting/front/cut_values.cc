@@ -213,8 +213,8 @@ CutValue CutValues::led_to(const std::vector<double>& p,
     nowhere = nowhere || led == Led::kNowhere;
   }
   if (value.known) return value;
-  // Cut times have no jumps. So where all that is known nearby is too late to count, the ray has no
-  // cut before it is conjugate, but for its neighbours.
+  // But for abnormal extremals cut times have no jumps. So where all that is known nearby is too
+  // late to count, the ray has no cut before it is conjugate, other than with its neighbours.
   const bool nothing_before = (later || beside_none) && !nowhere;
   const bool at_border = beside_conjugate && (later || nowhere);  // of what is cut where conjugate
   if (std::isinf(conjugate)) {
