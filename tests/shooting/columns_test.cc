@@ -58,6 +58,21 @@ TEST(Columns, EndWhereExtremalsAreConjugate) {
   }
 }
 
+// Beside the abnormal line some directions have no bound that is found. Those of half of them are
+// known, and grow like the inverse square of the time.
+TEST(Columns, HalfOfTheDirectionsHaveABound) {
+  constexpr double kTold = 0.04;  // both are known to 2 %
+  const Dynamics dynamics = martinet();
+  const UnitMomenta momenta(dynamics, kOrigin, {});
+  EXPECT_TRUE(std::isinf(conjugate_bound(dynamics, kOrigin, momenta, 0.125, 2)));
+  const double whole = median_conjugate_bound(dynamics, kOrigin, momenta, 1, 2);
+  ASSERT_TRUE(std::isfinite(whole));
+  for (const double d : {0.1, 1e-3}) {
+    const double small = median_conjugate_bound(dynamics, kOrigin, momenta, d, 2);
+    EXPECT_NEAR(d * d * small, whole, kTold * whole) << d;
+  }
+}
+
 TEST(Columns, AreAddedBesideAnAbnormalCurveOnly) {
   const std::vector<Column> columns = columns_of(martinet(), 0.2);
   const auto is_added = [](const Column& column) { return column.added; };

@@ -423,6 +423,14 @@ TEST(Wavefront, SaysWhereAbnormalCurvesStart) {
   EXPECT_THAT(wavefront(martinet, {0, 0.5, 0}, options).message, Not(HasSubstr("abnormal")));
 }
 
+// Nothing of its caustic was within the bound that is taken where nothing is known.
+TEST(Wavefront, HasACausticBesideAnAbnormalCurve) {
+  const Dynamics martinet = test::martinet({0, 0, 0}).dynamics;
+  const FrontMesh mesh = wavefront(martinet, {0, 0, 0}, coarse(FrontKind::kCaustic, 1));
+  EXPECT_GT(mesh.triangles.size(), 100U);
+  EXPECT_THAT(mesh.message, HasSubstr("half of the times are below 0.5"));
+}
+
 TEST(Wavefront, IsTheSameForAnyNumberOfThreads) {
   for (const FrontKind what : {FrontKind::kCaustic, FrontKind::kSphere}) {
     FrontOptions options = coarse(what, 1);

@@ -184,14 +184,26 @@ class FrontMaker {
     constexpr double kOfFront = 0.5;
     return options.what == FrontKind::kFront && !options.section ? kOfFront : 1;
   }
-  [[nodiscard]] double chosen_bound() const {
-    // Of what ends at R: down to an eighth of it, which looks much the same, only smaller.
-    constexpr double kOfTimes = 0.125;
+  static constexpr double kOfTimes = 0.125;
+  // Sets least_part_, too.
+  double chosen_bound() {
+    // Of what ends at R: down to an eighth of it, which looks much the same, only smaller. Where
+    // some directions have no such bound, momenta grow like the inverse square of the time, and
+    // down to a half of R in half of the directions is enough: Martinet's caustic takes 0.3 s then,
+    // and a minute down to an eighth.
+    constexpr double kOfHalf = 0.5;
     constexpr double kAnyway = 16;  // where conjugate times tell nothing
-    const double part = at_length() ? part_of_front(options_) : kOfTimes;
-    const double bound =
-        conjugate_bound(dynamics_, from_, momenta_, part * options_.length, options_.threads);
-    return std::isfinite(bound) ? bound : kAnyway / options_.length;
+    least_part_ = at_length() ? part_of_front(options_) : kOfTimes;
+    const auto at = [&](const auto& bound_at) {
+      return bound_at(dynamics_, from_, momenta_, least_part_ * options_.length, options_.threads);
+    };
+    double bound = at(conjugate_bound);
+    if (std::isfinite(bound)) return bound;
+    least_part_ = at_length() ? 1 : kOfHalf;
+    bound = at(median_conjugate_bound);
+    if (std::isfinite(bound)) return bound;
+    least_part_ = 0;
+    return kAnyway / options_.length;
   }
 
   // The ends of rays from `first` on, at the time that counts.
@@ -565,8 +577,10 @@ class FrontMaker {
     }
     if (options_.what != FrontKind::kSphere && momenta_.has_line()) {
       text << beyond_bound();
-      if (!at_length() && options_.bound == 0)
-        text << ", where times are below " << options_.length / 8;
+      if (!at_length() && least_part_ > 0) {
+        text << ", where " << (least_part_ > kOfTimes ? "half of the " : "") << "times are below "
+             << least_part_ * options_.length;
+      }
     }
     const auto add = [&text]() -> std::ostream& {
       return text << (text.str().empty() ? "" : "; ");
@@ -601,6 +615,7 @@ class FrontMaker {
   Surface surface_;
   std::vector<int> seeds_;  // vertices of the first mesh that may be searched; empty: all
   double bound_ = 0;
+  double least_part_ = 0;                           // of R, that ends at a chosen bound; 0: unknown
   std::vector<double> ends_;                        // q of each vertex
   std::vector<double> times_;                       // of each vertex, of a caustic or a cut locus
   int border_ = -1;                                 // the first vertex of the border

@@ -11,6 +11,8 @@
 namespace carnot::internal {
 namespace {
 
+constexpr int kRays = 16;  // directions that tell a bound
+
 // A column, and where its places end.
 struct ColumnEnds {
   Column column;
@@ -172,11 +174,23 @@ double conjugate_bound(const Dynamics& dynamics,
                        const UnitMomenta& momenta,
                        double target,
                        int threads) {
-  constexpr int kRays = 16;
   constexpr int kDoublings = 8;
   const std::vector<double> bounds = bounds_along(
       dynamics, from, momenta, target, Eigen::Vector2d::UnitX(), kRays, kDoublings, threads);
   return *std::max_element(bounds.begin(), bounds.end());
+}
+
+double median_conjugate_bound(const Dynamics& dynamics,
+                              const std::vector<double>& from,
+                              const UnitMomenta& momenta,
+                              double target,
+                              int threads) {
+  constexpr int kDoublings = 20;
+  std::vector<double> bounds = bounds_along(
+      dynamics, from, momenta, target, Eigen::Vector2d::UnitX(), kRays, kDoublings, threads);
+  const auto middle = bounds.begin() + std::ssize(bounds) / 2;
+  std::nth_element(bounds.begin(), middle, bounds.end());
+  return *middle;
 }
 
 std::vector<Column> conjugate_columns(const ConjugateColumns& asked, ImageScale scale) {

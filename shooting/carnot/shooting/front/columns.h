@@ -62,6 +62,15 @@ double conjugate_bound(const Dynamics& dynamics,
                        double target,
                        int threads);
 
+// The one beyond which those of half of the directions are: beside an abnormal extremal others are
+// so only far out. It is looked for up to a million turns in the target, since momenta that act by
+// three brackets are as large as 40 over the square of a small length.
+double median_conjugate_bound(const Dynamics& dynamics,
+                              const std::vector<double>& from,
+                              const UnitMomenta& momenta,
+                              double target,
+                              int threads);
+
 // What the columns of a sphere are asked for.
 struct ConjugateColumns {
   const Dynamics& dynamics;
