@@ -213,8 +213,8 @@ int widest_momentum(const std::vector<FrontMesh>& meshes, int dof) {
   return widest;
 }
 
-// Where the sheets are on an axis, in the middle.
-double middle_of(const plots::SurfacePage& page, int axis) {
+// Where the sheets are on an axis: from the first value to the second.
+std::pair<double, double> range_of(const plots::SurfacePage& page, int axis) {
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
   for (const auto& sheet : page.sheets) {
@@ -224,25 +224,34 @@ double middle_of(const plots::SurfacePage& page, int axis) {
       high = std::max(high, point[axis]);
     }
   }
-  return 0.5 * (low + high);
+  return {low, high};
 }
 
 // Through the start, across the axis where most is to be seen; or through the middle where sheets
-// are elsewhere.
+// are elsewhere. Sheets that lie in a plane but for round-off, such as Martinet's cut locus, are
+// not cut along it.
 void choose_section(const FrontRequest& request,
                     const std::vector<int>& seen,
                     plots::SurfacePage& page) {
+  constexpr double kFlat = 1e-7;
+  const auto extent = [&](int axis) {
+    const auto [low, high] = range_of(page, axis);
+    return high - low;
+  };
+  const double widest = std::max({extent(0), extent(1), extent(2)});
   std::size_t most = 0;
   for (const int across : {1, 2, 0}) {
     std::size_t pieces = 0;
     const double at = request.from[seen[across]];
     for (const auto& sheet : page.sheets) pieces += plots::section_of(sheet, across, at).size();
-    if (pieces <= 2 * most) continue;
+    if (pieces <= 2 * most || extent(across) <= kFlat * widest) continue;
     most = pieces;
     page.across = across;
     page.at = at;
   }
-  if (most == 0) page.at = middle_of(page, page.across);
+  if (most > 0) return;
+  const auto [low, high] = range_of(page, page.across);
+  page.at = 0.5 * (low + high);
 }
 
 // The colour tells times where they differ, and else the momentum along the line.
