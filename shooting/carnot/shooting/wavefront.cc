@@ -184,13 +184,12 @@ class FrontMaker {
     constexpr double kOfFront = 0.5;
     return options.what == FrontKind::kFront && !options.section ? kOfFront : 1;
   }
-  static constexpr double kOfTimes = 0.125;
   // Sets least_part_, too.
   double chosen_bound() {
     // Of what ends at R: down to an eighth of it, which looks much the same, only smaller. Where
     // some directions have no such bound, momenta grow like the inverse square of the time, and
     // down to a half of R in half of the directions is enough: Martinet's caustic takes 0.3 s then,
-    // and a minute down to an eighth.
+    // and more than a minute down to an eighth.
     constexpr double kOfHalf = 0.5;
     constexpr double kAnyway = 16;  // where conjugate times tell nothing
     least_part_ = at_length() ? part_of_front(options_) : kOfTimes;
@@ -601,7 +600,8 @@ class FrontMaker {
 
   // Times are followed to here, so that what borders on the surface has an image, too.
   static constexpr double kMargin = 1.5;
-  static constexpr double kFarthest = 2;  // where images are still made
+  static constexpr double kOfTimes = 0.125;  // of R: what is earlier is left out of a chosen bound
+  static constexpr double kFarthest = 2;     // where images are still made
 
   const Dynamics& dynamics_;
   const std::vector<double>& from_;

@@ -15,7 +15,8 @@ namespace {
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 // Of the scaled F: eigenvalues that are nearer to zero count as zero. On an abnormal extremal some
-// of them stay there, but for the round-off of the flow: up to 6e-16 on 15 of six scenes.
+// of them stay there, but for the round-off of the flow, which was up to 1.3e-15 on 22 such
+// extremals of seven scenes, up to ten natural lengths long.
 constexpr double kRounding = 1e-14;
 constexpr int kHalvings = 24;
 
@@ -259,9 +260,9 @@ ConjugatePoint conjugate_point(const Ray& ray, double horizon, int order) {
   const Dynamics& dynamics = ray.dynamics();
   Count count(ray, order);
   double begin = 0;
-  const double turns = kFirst * steps_of_tangents(dynamics, count.z(), horizon);
-  if (!(turns < kMost)) return {std::numeric_limits<double>::quiet_NaN(), {}};
-  double h = kFirst * horizon / std::max(1.0, std::ceil(turns));  // was enough before
+  const double least = kFirst * steps_of_tangents(dynamics, count.z(), horizon);
+  if (!(least < kMost)) return {std::numeric_limits<double>::quiet_NaN(), {}};
+  double h = kFirst * horizon / std::max(1.0, std::ceil(least));  // was enough before
   for (double part = kFirst; part <= 1; part *= 2) {
     const double length = part * horizon - begin;
     const long fewest = std::max(1L, std::lround(length / h));
