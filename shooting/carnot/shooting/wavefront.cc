@@ -313,6 +313,7 @@ class FrontMaker {
     settle(first);
     if (needs_cuts()) {
       std::vector<std::pair<int, int>> pairs;
+      pairs.reserve(parents.size());
       for (const Between& place : parents) pairs.emplace_back(place.a, place.b);
       if (!cuts_.add_between(momenta_from(first), pairs, std::move(found))) return false;
     }

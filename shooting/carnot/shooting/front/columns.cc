@@ -66,6 +66,7 @@ class ColumnMaker {
     ColumnEnds one{{c, -bound(-1), bound(1)}, {}};
     if (!is_bounded(one.column)) return one;
     std::vector<std::vector<double>> momenta;
+    momenta.reserve(kPlacesOnColumn);
     for (int i = 0; i < kPlacesOnColumn; ++i) {
       momenta.push_back(asked_.momenta.momentum(place_on(one.column, i)));
     }

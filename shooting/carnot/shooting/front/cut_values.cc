@@ -243,6 +243,7 @@ CutValue CutValues::led_to(const std::vector<double>& p,
 
 std::vector<CutValues::Neighbour> CutValues::those(const std::vector<int>& neighbours) const {
   std::vector<Neighbour> list;
+  list.reserve(neighbours.size());
   for (const int j : neighbours) list.push_back(neighbour(j));
   return list;
 }

@@ -32,6 +32,7 @@ Eigen::Vector2d way_out(int j) { return at_angle(2 * std::numbers::pi * (j + kAs
 // The triangles of a disc: vertex 0 is the middle, and ring i has 1 + i kAround and those after it.
 std::vector<std::array<int, 3>> triangles_of_disc() {
   std::vector<std::array<int, 3>> triangles;
+  triangles.reserve(kAround * (2 * kRings - 1));
   const auto on_ring = [](int i, int j) { return 1 + i * kAround + j % kAround; };
   for (int j = 0; j < kAround; ++j) triangles.push_back({0, on_ring(0, j), on_ring(0, j + 1)});
   for (int i = 0; i + 1 < kRings; ++i) {
@@ -163,7 +164,8 @@ class LatticeCutter {
     constexpr double kEnough = 1e-12;  // of an edge
     std::vector<SurfaceVertex> vertices(edges_.size());
     for_all(static_cast<int>(edges_.size()), [&](int k) {
-      const auto& [a, b] = edges_[k];
+      const int a = edges_[k].first;
+      const int b = edges_[k].second;
       const auto place = [&](double part) { return between(places_[a], places_[b], part); };
       const auto value = [&](double part) {
         const double excess = section_.excess_at(place(part));

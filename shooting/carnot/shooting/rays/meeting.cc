@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "carnot/shooting/linear/dense.h"
 #include "carnot/shooting/linear/illinois.h"
@@ -184,7 +186,7 @@ std::optional<Rival> carried(const Ray& ray,
   VectorXd change(n);
   for (Eigen::Index j = 0; j < n; ++j) change[j] = to[j] - ray.p()[j];
   VectorXd moved = own->tangent.topRows(n) * change;
-  for (std::size_t j = 0; j < rival.signs.size(); ++j) moved[j] *= rival.signs[j];
+  for (Eigen::Index j = 0; j < std::ssize(rival.signs); ++j) moved[j] *= rival.signs[j];
   Rival next = rival;
   equations.carry(moved, next);
   return next;
@@ -197,9 +199,9 @@ namespace {
 // itself, in the direction of its last two points.
 class Branch {
  public:
-  Branch(const Ray& ray, const VectorXd& direction, double conjugate_time)
+  Branch(const Ray& ray, VectorXd direction, double conjugate_time)
       : ray_(&ray),
-        direction_(direction),
+        direction_(std::move(direction)),
         rival_{ray.p(), std::vector<double>(ray.p().size(), 0.0), conjugate_time} {}
 
   // To the point that is further by `length` along the direction, which is then that of this step.
@@ -234,7 +236,7 @@ class Branch {
   }
   [[nodiscard]] bool solve_at(double length, long steps, Rival& point) const {
     const double here = direction_.dot(momentum_of(point) - momentum_of({ray_->p(), {}}));
-    for (std::size_t j = 0; j < point.p.size(); ++j) point.p[j] += length * direction_[j];
+    for (Eigen::Index j = 0; j < direction_.size(); ++j) point.p[j] += length * direction_[j];
     point.t += length * later_;
     return solve(*ray_, {here + length, direction_}, steps, point);
   }
