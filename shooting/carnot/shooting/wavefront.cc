@@ -350,7 +350,7 @@ class FrontMaker {
 
   // The cut time at a place on an edge. The known places on either side of it lead there, and it
   // becomes one of them where it has a partner. Others lead nowhere, and beside an abnormal
-  // extremal conjugate times may be wrong.
+  // extremal conjugate times jump.
   double cut_time_at(double part, std::vector<double> p, std::map<double, CutRay>& known) {
     auto after = known.lower_bound(part);
     if (after == known.end()) --after;
