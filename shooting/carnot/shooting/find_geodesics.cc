@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "carnot/shooting/problem/natural_scales.h"
 #include "carnot/shooting/problem/origin.h"
 #include "carnot/shooting/problem/rescaled.h"
+#include "carnot/shooting/problem/turn_rates.h"
 #include "carnot/shooting/problem/windings.h"
 #include "carnot/shooting/search/abnormal_search.h"
 #include "carnot/shooting/search/deadline.h"
@@ -218,6 +220,18 @@ void search_image(const NaturalScales& scales, const GeodesicOptions& options, F
   }
 }
 
+// The length beyond which an extremal is none of those that are wanted.
+double longest_wanted(const std::vector<Extremal>& list, const GeodesicOptions& options) {
+  const auto count = static_cast<std::size_t>(options.count);
+  if (options.all || list.size() < count) return options.max_length;
+  std::vector<double> lengths;
+  for (const Extremal& extremal : list) {
+    lengths.push_back(extremal.geodesic.length.value_or(std::numeric_limits<double>::infinity()));
+  }
+  std::nth_element(lengths.begin(), lengths.begin() + options.count - 1, lengths.end());
+  return std::min(options.max_length, lengths[count - 1]);
+}
+
 GeodesicReport find_without_limits(const BoundaryValueProblem& asked,
                                    const GeodesicOptions& options) {
   const auto began = std::chrono::steady_clock::now();
@@ -231,9 +245,13 @@ GeodesicReport find_without_limits(const BoundaryValueProblem& asked,
   if (search.mod_angles) images = images_of_target(problem, search.max_length);
   Found found;
   found.problems.reserve(images.size());  // extremals refer to them
+  // One guess is soon tried for all images.
+  const bool prunes = images.size() > 1 && options.guess.empty();
+  const std::vector<double> rates = prunes ? turn_rates(problem) : std::vector<double>{};
   for (const Image& image : images) {
     found.problems.push_back(problem);
     found.problems.back().to = image.to;
+    if (least_length(found.problems.back(), rates) > longest_wanted(found.list, search)) continue;
     GeodesicOptions of_image = search;
     of_image.time_limit = deadline.left();
     search_image(scales, of_image, found);

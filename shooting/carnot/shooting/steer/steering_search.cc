@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <stdexcept>
 #include <utility>
 
 #include "carnot/shooting/extremal/ranking.h"
 #include "carnot/shooting/problem/natural_scales.h"
+#include "carnot/shooting/problem/turn_rates.h"
 #include "carnot/shooting/problem/windings.h"
 
 namespace carnot::internal {
@@ -50,7 +50,7 @@ SteeringSearch::SteeringSearch(Dynamics dynamics, const SteeringOptions& options
     throw std::invalid_argument("free_target has " + std::to_string(free) +
                                 " components, the scene has " + std::to_string(zero.size()));
   }
-  measure_rates();
+  rates_ = turn_rates({dynamics_, zero, zero, options_.time});
   measure_sizes();
 }
 
@@ -69,39 +69,6 @@ GeodesicOptions SteeringSearch::options_of_search(int count) const {
   return search;
 }
 
-// What an angle can turn per length is sqrt(v_j) at the velocity v of the momentum e_j. The rate is
-// the largest of a sample of configurations. With a potential the length bounds no action, and the
-// rates stay 0.
-void SteeringSearch::measure_rates() {
-  constexpr int kConfigurations = 256;
-  constexpr double kMargin = 1.03;
-  constexpr double kRoom = 10;  // of coordinates without a period
-  const int n = dynamics_.dof;
-  rates_.assign(n, 0.0);
-  if (!dynamics_.has_transcription()) return;
-  std::mt19937_64 random;
-  std::vector<double> q(n), p(n), velocity(n), terms(n + dynamics_.transcribed + 1);
-  std::vector<double> lambda(dynamics_.multipliers);
-  for (int i = 0; i < kConfigurations; ++i) {
-    for (int j = 0; j < n; ++j) {
-      const double room = period_of(j) > 0 ? period_of(j) : kRoom;
-      q[j] = std::uniform_real_distribution<double>(-room, room)(random);
-    }
-    if (dynamics_.midpoint(q, p, terms) && terms.back() != 0) {
-      rates_.assign(n, 0.0);
-      return;
-    }
-    for (int j = 0; j < n; ++j) {
-      if (!(period_of(j) > 0)) continue;
-      p[j] = 1;
-      std::fill(velocity.begin(), velocity.end(), 0.0);
-      (void)dynamics_.evaluate(0, q, p, velocity, lambda);
-      if (velocity[j] > 0) rates_[j] = std::max(rates_[j], kMargin * std::sqrt(velocity[j]));
-      p[j] = 0;
-    }
-  }
-}
-
 // Those of the scene, without a target. A scene whose scales are those of its questions keeps its
 // own units: where there is no metric, or where the metric says nothing at the origin.
 void SteeringSearch::measure_sizes() {
@@ -111,16 +78,6 @@ void SteeringSearch::measure_sizes() {
   const NaturalScales scales = natural_scales({dynamics_, zero, zero, options_.time});
   const auto is_size = [](double u) { return u > 0 && std::isfinite(u); };
   if (std::all_of(scales.q.begin(), scales.q.end(), is_size)) sizes_ = scales.q;
-}
-
-// No path has less action than this, since its angles turn so far.
-double SteeringSearch::least_action(const BoundaryValueProblem& problem) const {
-  double length = 0;
-  for (std::size_t j = 0; j < rates_.size(); ++j) {
-    if (!(rates_[j] > 0)) continue;
-    length = std::max(length, std::abs(problem.to[j] - problem.from[j]) / rates_[j]);
-  }
-  return 0.5 * length * length / problem.time;
 }
 
 std::string SteeringSearch::refusal(std::span<const double> from,
@@ -177,7 +134,9 @@ std::vector<std::shared_ptr<const SteeringAnswer>> SteeringSearch::answers(
   for (const Image& image : images) {
     problem.to = image.to;
     const bool full = static_cast<int>(list.size()) >= count;
-    if (full && least_action(problem) >= list.back().geodesic->action) continue;
+    const double length = least_length(problem, rates_);
+    const double action = 0.5 * length * length / problem.time;
+    if (full && action >= list.back().geodesic->action) continue;
     GeodesicOptions options = options_of_search(count);
     std::vector<Geodesic> found = solve(problem, options, failure);
     // Only the nearest image makes the distance small where the target is near.

@@ -75,15 +75,13 @@ class SteeringSearch {
   [[nodiscard]] static std::vector<Geodesic> solve(const BoundaryValueProblem& problem,
                                                    const GeodesicOptions& options,
                                                    SteeringAnswer& failure);
-  void measure_rates();
   void measure_sizes();
-  [[nodiscard]] double least_action(const BoundaryValueProblem& problem) const;
   [[nodiscard]] double period_of(int j) const { return dynamics_.info.configuration[j].period; }
 
   Dynamics dynamics_;
   SteeringOptions options_;
   std::vector<double> sizes_;  // natural scales of the coordinates, the same for all questions
-  std::vector<double> rates_;  // of each coordinate with a period, the largest per length; or 0
+  std::vector<double> rates_;  // of its angles (turn_rates.h)
 };
 
 }  // namespace carnot::internal
