@@ -43,17 +43,20 @@ TEST(FieldStore, KeepsWhatIsPut) {
 }
 
 TEST(FieldStore, TellsNewsOnceToEach) {
+  constexpr auto kSlab = FieldStore::kSlab;
   FieldStore store(1, 3, 2);
-  EXPECT_FALSE(store.has_news(0, 0));
+  EXPECT_FALSE(store.has_news(0, kSlab));
   store.put(0, some_point(1));
-  EXPECT_TRUE(store.has_news(0, 0));
-  EXPECT_FALSE(store.has_news(0, 0));
-  EXPECT_TRUE(store.has_news(0, 2));
+  EXPECT_TRUE(store.has_news(0, kSlab));
+  store.told(0, kSlab);
+  EXPECT_FALSE(store.has_news(0, kSlab));
+  EXPECT_TRUE(store.has_news(0, FieldStore::kUp));
+  EXPECT_TRUE(store.has_news(0, FieldStore::kDown));
   store.replace(0, some_point(2));
   EXPECT_EQ(store.action(0), 2);
-  EXPECT_FALSE(store.has_news(0, 0));
+  EXPECT_FALSE(store.has_news(0, kSlab));
   store.put(0, some_point(1));
-  EXPECT_TRUE(store.has_news(0, 0));
+  EXPECT_TRUE(store.has_news(0, kSlab));
 }
 
 TEST(FieldStore, DoubtsEndWithAnImprovement) {

@@ -35,6 +35,25 @@ TEST_F(AcrossTheAxis, SaysWhereSweepsWereNotEnough) {
   EXPECT_EQ(sweep.spread(1, [](double) { return false; }), Spread::kStopped);
 }
 
+// A search's momentum is made an extremal with a few steps of Gauss, which stiff turns ask more of.
+TEST(FieldSweep, MakesExtremalsAgainThatAreNotExact) {
+  constexpr double kAllowed = 1e-10;
+  const BoundaryValueProblem problem = test::sideways();
+  const FieldGrid grid{problem.to, {{1, {1.0}, false, 0}}};
+  const GeodesicReport report = find_geodesics(problem);
+  for (const bool packs : {true, false}) {
+    BoundaryValueProblem own = problem;
+    own.dynamics.kernel.fills_packs = packs;
+    FieldSweep sweep(own, grid);
+    ASSERT_TRUE(sweep.seed(0, report.geodesics.at(0).p0, {0}, 0));
+    const std::vector<long> points{0};
+    const std::vector<double> units(4, 1.0);
+    EXPECT_LE(sweep.verify(points, units, kAllowed).at(0), kAllowed);
+    EXPECT_NEAR(sweep.points().action(0), report.geodesics[0].action, 1e-9);
+    EXPECT_GT(sweep.verify(points, units, 0).at(0), 0);  // no flow is exact
+  }
+}
+
 TEST(FieldGrid, StepsToNeighbours) {
   constexpr double kTurn = 6;
   const FieldGrid grid{

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "carnot/numerics/pack.h"
 #include "carnot/tableau/dop853_embedded.h"
@@ -15,39 +16,47 @@ using namespace dop853;
 constexpr int W = kErasedLanes;
 using P = Pack<W>;
 
-// Row k of sum_j w_j f_j, over the weights that do not vanish; each f_j has `size` rows.
-[[gnu::always_inline]] inline P weighted_row(const Weights& w, const double* f, int size, int k) {
-  P sum(0);
-  for (int j = 0; j < kStages; ++j) {
-    if (w[j] != 0) sum += P(w[j]) * P::load(f + (j * size + k) * W);
-  }
-  return sum;
+// Row k of sum_j w_j f_j; each f_j has `size` rows.
+template <const Weights& w>
+[[gnu::always_inline]] inline P weighted_row(const double* f, int size, int k) {
+  return weighted<w>(P(0), [&](int j) { return P::load(f + (j * size + k) * W); });
 }
 
-// Row k of `to` <- row k of z + h sum_j w_j f_j.
+// Row k of `to` <- row k of z + h sum_j a_ij f_j. The weights are known to the compiler: where they
+// were looked up the sums took as long as the rates of the vehicle.
+template <int i>
+inline constexpr Weights kRow = kA[i];
+template <int i>
 [[gnu::flatten, gnu::noinline]] void combine(
-    const Weights& w, const double* z, double h, const double* f, int size, double* to) {
+    const double* z, double h, const double* f, int size, double* to) {
   for (int k = 0; k < size; ++k) {
-    const P sum = weighted_row(w, f, size, k);
+    const P sum = weighted_row<kRow<i>>(f, size, k);
     (P::load(z + k * W) + P(h) * sum).store(to + k * W);
   }
 }
+constexpr auto kCombine = []<int... i>(std::integer_sequence<int, i...> /*stages*/) {
+  return std::array{&combine<i>...};
+}
+(std::make_integer_sequence<int, kStages + 1>{});
 
-// The error of the step over the tolerance, largest of all lanes and components: with e5, e3 the
-// differences to the embedded results, h e5^2 / sqrt(e5^2 + e3^2 / 100).
-[[gnu::flatten, gnu::noinline]] double error_ratio(
+// The error of the step over the tolerance, largest of all components: with e5, e3 the differences
+// to the embedded results, h e5^2 / sqrt(e5^2 + e3^2 / 100).
+using Lanes = std::array<double, W>;
+[[gnu::flatten, gnu::noinline]] Lanes error_ratio(
     const double* z, const double* end, double h, double tolerance, const double* f, int size) {
   P fifth_square(0);
   P third_square(0);
   for (int i = 0; i < size; ++i) {
     const P scale = P(tolerance) * (P(1) + max(abs(P::load(z + i * W)), abs(P::load(end + i * W))));
-    const P fifth_ratio = weighted_row(kError5, f, size, i) / scale;
-    const P third_ratio = weighted_row(kError3, f, size, i) / scale;
+    const P fifth_ratio = weighted_row<kError5>(f, size, i) / scale;
+    const P third_ratio = weighted_row<kError3>(f, size, i) / scale;
     fifth_square += fifth_ratio * fifth_ratio;
     third_square += third_ratio * third_ratio;
   }
   const P scale = sqrt(max(P(size) * (fifth_square + P(0.01) * third_square), P(1e-300)));
-  return largest(P(std::abs(h)) * fifth_square / scale);
+  alignas(64) Lanes ratios;
+  (P(std::abs(h)) * fifth_square / scale).store(ratios.data());
+  return ratios;
 }
 
 }  // namespace
@@ -95,13 +104,17 @@ AdaptiveReport dop853_adaptive(const AdaptiveFlow& flow, double* z, double* memo
     const double t = start + duration - sign * left;
     bool ok = true;
     for (int i = 1; i < kStages && ok; ++i) {
-      combine(kA[i], z, step, f, size, stage);
+      kCombine[i](z, step, f, size, stage);
       ok = rate(t + kTableau.c[i] * step, stage, i);
     }
     double ratio = INFINITY;
     if (ok) {
-      combine(kA[kStages], z, step, f, size, stage);
-      ratio = error_ratio(z, stage, step, tolerance, f, size);
+      kCombine[kStages](z, step, f, size, stage);
+      const Lanes ratios = error_ratio(z, stage, step, tolerance, f, size);
+      const auto* const hardest = std::max_element(
+          ratios.begin(), ratios.end(), [](double a, double b) { return a < b || std::isnan(b); });
+      report.hardest = static_cast<int>(hardest - ratios.begin());
+      ratio = *hardest;
     }
     const double growth =
         std::isfinite(ratio) ? kSafety / std::pow(std::max(ratio, 1e-10), 0.125) : kMostShrink;

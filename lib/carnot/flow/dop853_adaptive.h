@@ -29,6 +29,7 @@ struct AdaptiveReport {
   long steps = 0;
   long rejected = 0;
   long evaluations = 0;  // per lane
+  int hardest = 0;       // the lane that decided on the last step
 };
 
 // Advances kErasedLanes phase points, in rows of as many numbers. On failure z is where the last

@@ -51,8 +51,8 @@ struct Field {
   int dof = 0;
   std::vector<double> action;
   std::vector<double> p0;  // n of each point
-  // Of an independent flow with twice as many steps. Where searches gave a point at knots only it
-  // is the defect there.
+  // At the end, of an independent flow: with less tolerance, or twice as many steps, than that
+  // which the point was made by. Where searches gave a point at knots only it is the defect there.
   std::vector<double> error;
   std::vector<Verification> verification;
   std::vector<Label> label;    // that of the search that a point was reached from

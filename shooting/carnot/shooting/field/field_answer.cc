@@ -45,9 +45,14 @@ void FieldSolver::verify(Field& field) {
   const long blocks = (size + kBlock - 1) / kBlock;
   parallel_for(static_cast<int>(blocks), threads, [&](int block) {
     if (!go_on()) return;
+    std::vector<long> points;
     for (long i = block * kBlock; i < std::min(size, (block + 1) * kBlock); ++i) {
-      if (!sweep_.points().known(i)) continue;
-      field.error[i] = sweep_.verify(i, scales_.q, allowed);
+      if (sweep_.points().known(i)) points.push_back(i);
+    }
+    const std::vector<double> errors = sweep_.verify(points, scales_.q, allowed);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const long i = points[k];
+      field.error[i] = errors[k];
       const FieldPoint point = sweep_.points().point(i);
       field.action[i] = point.action * scales_.action;
       field.label[i] = labels_[point.origin];

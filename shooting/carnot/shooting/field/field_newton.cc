@@ -1,7 +1,6 @@
 #include "carnot/shooting/field/field_newton.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -58,109 +57,152 @@ std::vector<double> FieldNewton::end(const SmallVector& p0, int factor) const {
   return z;
 }
 
-void FieldNewton::solve(std::span<FieldAttempt> attempts, Care care, long& flows) const {
-  const bool packed = tangents_of_a_pack(problem_.dynamics) > 0;
-  if (packed) solve_packed(attempts, flows);
-  if (packed && care == Care::kQuick) return;
+void FieldNewton::solve(std::span<FieldAttempt> attempts, long& flows) const {
+  if (has_packs(problem_.dynamics)) {
+    solve_packed(attempts, flows);
+    return;
+  }
   for (FieldAttempt& attempt : attempts) {
-    if (attempt.found) continue;
+    if (attempt.point.p0.size() == 0) continue;
     approach(attempt, attempt.point.p0);
     attempt.found = solve(attempt.target, attempt.point, flows);
   }
 }
 
-void FieldNewton::approach_packed(std::span<const FieldAttempt> attempts,
-                                  std::span<SmallVector> p0) const {
-  const auto together = static_cast<std::size_t>(ends_of_a_pack(problem_.dynamics));
-  std::vector<SmallVector> ends(together);
-  for (std::size_t i = 0; i < p0.size(); i += together) {
-    const auto some = p0.subspan(i, std::min(together, p0.size() - i));
-    if (!packed_ends(problem_, some, ends)) continue;
-    for (std::size_t k = 0; k < some.size(); ++k) {
-      const FieldAttempt& attempt = attempts[i + k];
-      const SmallVector correction = attempt.inverse * miss_of(ends[k].data(), attempt.target);
-      if (largest(correction) < largest(some[k])) some[k] -= correction;
-    }
+FieldNewton::Near FieldNewton::approach_packed(std::span<FieldAttempt> attempts) const {
+  constexpr int kMost = 4;
+  constexpr double kFalls = 0.5;  // of the error in a step; else a Jacobian of its own pays
+  constexpr double kNear = 1e-2;
+  struct Approach {
+    std::size_t attempt = 0;
+    SmallVector step;  // the last one, and the miss before it
+    SmallVector miss;
+  };
+  std::vector<Approach> open;
+  for (std::size_t i = 0; i < attempts.size(); ++i) {
+    if (attempts[i].point.p0.size() > 0) open.push_back({i, {}, {}});
   }
+  Near near;
+  for (int step = 0; step < kMost && !open.empty(); ++step) {
+    std::vector<SmallVector> p0;
+    for (const Approach& one : open) p0.push_back(attempts[one.attempt].point.p0);
+    const std::vector<PackedEnd> ends = packed_ends(problem_, p0, kCoarseFlow);
+    std::vector<Approach> left;
+    for (std::size_t k = 0; k < open.size(); ++k) {
+      if (!ends[k].reached) continue;
+      Approach& one = open[k];
+      auto& [target, inverse, point, rough, found] = attempts[one.attempt];
+      const SmallVector miss = miss_of(ends[k].q1.data(), target);
+      if (step > 0 && !(largest(miss) < kFalls * largest(one.miss))) {
+        if (!(largest(miss) < largest(one.miss))) point.p0 -= one.step;
+        near.push_back(one.attempt);
+        continue;
+      }
+      if (step > 0) {
+        // Broyden's update of an inverse, from what the last step changed.
+        const SmallVector expected = inverse * (miss - one.miss);
+        const SmallVector row = inverse.transpose() * one.step;
+        inverse += (one.step - expected) * row.transpose() / one.step.dot(expected);
+      }
+      one.step = -inverse * miss;
+      one.miss = miss;
+      if (!(largest(one.step) < largest(point.p0))) continue;  // it leads anywhere
+      point.p0 += one.step;
+      if (largest(miss) > kNear && step + 1 < kMost) {
+        left.push_back(one);
+      } else {
+        near.push_back(one.attempt);
+      }
+    }
+    open = std::move(left);
+  }
+  return near;
 }
 
 void FieldNewton::solve_packed(std::span<FieldAttempt> attempts, long& flows) const {
   constexpr int kMost = 4;
-  const auto together = static_cast<std::size_t>(tangents_of_a_pack(problem_.dynamics));
-  std::vector<SmallVector> p0;
-  for (const FieldAttempt& attempt : attempts) p0.push_back(attempt.point.p0);
-  // Fields of 133,956 unicycles take 283,064 tangents without this, 178,178 with it, and 163,222
-  // where it is done twice, which costs what it saves.
-  approach_packed(attempts, p0);
+  Near open = approach_packed(attempts);
   std::vector<double> last(attempts.size(), kInfinity);
-  std::vector<std::size_t> open(attempts.size());
-  for (std::size_t i = 0; i < open.size(); ++i) open[i] = i;
-  std::vector<SmallVector> some;
-  std::vector<PackedTangent> tangents(together);
+  std::vector<std::size_t> near;
   for (int step = 0; step < kMost && !open.empty(); ++step) {
+    std::vector<SmallVector> p0;
+    for (const std::size_t i : open) p0.push_back(attempts[i].point.p0);
+    flows += static_cast<long>(open.size());
+    const std::vector<PackedTangent> tangents = packed_tangents(problem_, p0);
     std::vector<std::size_t> left;
-    for (std::size_t first = 0; first < open.size(); first += together) {
-      const std::size_t count = std::min(together, open.size() - first);
-      some.clear();
-      for (std::size_t k = 0; k < count; ++k) some.push_back(p0[open[first + k]]);
-      flows += static_cast<long>(count);
-      if (!packed_tangents(problem_, some, tangents)) continue;
-      for (std::size_t k = 0; k < count; ++k) {
-        const std::size_t i = open[first + k];
-        if (improve(tangents[k], attempts[i], p0[i], last[i])) left.push_back(i);
+    for (std::size_t k = 0; k < open.size(); ++k) {
+      const std::size_t i = open[k];
+      const Step went = improve(tangents[k], attempts[i], last[i]);
+      if (went == Step::kOn) left.push_back(i);
+      if (went != Step::kNear) continue;
+      if (attempts[i].rough) {
+        attempts[i].found = set_action(attempts[i].point);
+      } else {
+        near.push_back(i);
       }
     }
     open = left;
   }
+  std::vector<FieldAttempt> polished;
+  for (const std::size_t i : near) polished.push_back(std::move(attempts[i]));
+  polish(polished);
+  for (std::size_t k = 0; k < near.size(); ++k) attempts[near[k]] = std::move(polished[k]);
 }
 
-bool FieldNewton::improve(const PackedTangent& tangent,
-                          FieldAttempt& attempt,
-                          SmallVector& p0,
-                          double& last) const {
+FieldNewton::Step FieldNewton::improve(const PackedTangent& tangent,
+                                       FieldAttempt& attempt,
+                                       double& last) const {
   constexpr double kFalls = 0.5;  // of the error in a step, from the second one on
   constexpr double kNear = 1e-3;
+  if (!tangent.reached) return Step::kLost;
   const SmallVector miss = miss_of(tangent.q1.data(), attempt.target);
   const double error = largest(miss);
   const SmallMatrix inverse = small_lu_inverse(tangent.j);
-  if (!(error < kFalls * last) || !inverse.allFinite()) return false;
+  if (!(error < kFalls * last) || !inverse.allFinite()) return Step::kLost;
   last = error;
-  p0 -= inverse * miss;
-  if (error > kNear) return true;
-  FieldPoint point;
-  point.p0 = p0;
-  point.inverse = inverse;
-  if (!polish(attempt.target, error, point)) return false;
-  point.sign = static_cast<std::int8_t>(determinant_of(tangent.j).sign);
-  point.slope = tangent.k * inverse;
-  point.windings = attempt.point.windings;
-  point.origin = attempt.point.origin;
-  attempt.point = point;
-  attempt.found = true;
-  return false;
+  attempt.point.p0 -= inverse * miss;
+  if (error > kNear) return Step::kOn;
+  attempt.point.inverse = inverse;
+  attempt.point.sign = static_cast<std::int8_t>(determinant_of(tangent.j).sign);
+  attempt.point.slope = tangent.k * inverse;
+  attempt.point.p1 = tangent.p1 - attempt.point.slope * miss;
+  return Step::kNear;
 }
 
-bool FieldNewton::polish(const std::vector<double>& target, double near, FieldPoint& point) const {
+void FieldNewton::polish(std::span<FieldAttempt> attempts) const {
   constexpr int kMost = 5;
   constexpr double kFalls = 0.1;
   constexpr double kThere = 1e-12;
-  // The Jacobian is that of an end so far away, and of differences.
-  constexpr double kCoarse = 1e-4;
-  std::vector<double> z;
-  double last = kInfinity;
-  for (int step = 0; step < kMost; ++step) {
-    if (!flow(point.p0, 1, z)) return false;
-    const SmallVector miss = miss_of(z.data(), target);
-    const double error = largest(miss);
-    const double falls = step > 0 ? error / last : std::max(near, kCoarse);
-    if (!(error < last) || falls > kFalls) return false;
-    last = error;
-    point.p0 -= point.inverse * miss;
-    if (error * falls > kThere) continue;
-    point.p1 = Eigen::Map<const Eigen::VectorXd>(z.data() + n_, n_);
-    return set_action(point);
+  // After a step of Newton's method with coarse tangents a flow need not know more than this.
+  constexpr double kFirstFlow = 1e-9;
+  std::vector<double> last(attempts.size(), kInfinity);
+  std::vector<std::size_t> open(attempts.size());
+  for (std::size_t i = 0; i < open.size(); ++i) open[i] = i;
+  for (int step = 0; step < kMost && !open.empty(); ++step) {
+    std::vector<SmallVector> some;
+    for (const std::size_t i : open) some.push_back(attempts[i].point.p0);
+    const double tolerance = step == 0 ? kFirstFlow : kFineFlow;
+    const std::vector<PackedEnd> ends = packed_ends(problem_, some, tolerance);
+    std::vector<std::size_t> left;
+    for (std::size_t k = 0; k < open.size(); ++k) {
+      if (!ends[k].reached) continue;
+      const std::size_t i = open[k];
+      FieldPoint& point = attempts[i].point;
+      const SmallVector miss = miss_of(ends[k].q1.data(), attempts[i].target);
+      const double error = largest(miss);
+      const double falls = error / last[i];
+      if (!(error < last[i]) || falls > kFalls) continue;
+      last[i] = error;
+      point.p0 -= point.inverse * miss;
+      if (step == 0 || error * falls > kThere) {
+        left.push_back(i);
+      } else {
+        point.p1 = ends[k].p1 - point.slope * miss;
+        attempts[i].found = set_action(point);
+      }
+    }
+    open = left;
   }
-  return false;
 }
 
 void FieldNewton::approach(const FieldAttempt& attempt, SmallVector& p0) const {

@@ -1,9 +1,8 @@
 // Extremals to given ends by Newton's method, from momenta that are nearly right.
 //
-// Many are solved side by side where the scene has packs (packed_tangents.h): a coarse flow with
-// the inverse Jacobian of a neighbour and coarse tangents bring an end within 1e-3, and exact flows
-// with the last inverse Jacobian take it to round-off. Where that fails, and without packs, tangent
-// flows do it, one by one.
+// Many are solved side by side where the scene has packs (packed_tangents.h). Coarse flows with the
+// inverse Jacobian of a neighbour, coarse tangents, and finer flows with the last inverse Jacobian
+// follow each other. Without packs tangent flows do it, one by one.
 #pragma once
 
 #include <span>
@@ -19,7 +18,9 @@ namespace carnot::internal {
 struct FieldAttempt {
   std::vector<double> target;
   SmallMatrix inverse;  // of a neighbour's Jacobian
-  FieldPoint point;     // p0 where it begins; then all but its windings and origin, where found
+  // p0 where it begins, or none where there is no hope; then all but windings and origin, if found.
+  FieldPoint point;
+  bool rough = false;  // six digits are enough
   bool found = false;
 };
 
@@ -28,15 +29,16 @@ class FieldNewton {
   // Keeps a reference.
   explicit FieldNewton(const BoundaryValueProblem& problem);
 
-  // All of them; `flows` counts tangent flows, one for each extremal of a pack. Where extremals
-  // flow in packs, what those do not find is tried one by one only where care is thorough.
-  enum class Care { kQuick, kThorough };
-  void solve(std::span<FieldAttempt> attempts, Care care, long& flows) const;
+  // All of them that have a p0; `flows` counts tangent flows, one for each extremal of a pack.
+  void solve(std::span<FieldAttempt> attempts, long& flows) const;
   // One by tangent flows, with so many times the usual steps. False where there is none.
   bool solve(const std::vector<double>& target,
              FieldPoint& point,
              long& flows,
              int factor = 1) const;
+  // Takes each point.p0, which is nearly right, to round-off with its point.inverse, by flows of
+  // packs; those are found that it succeeds with.
+  void polish(std::span<FieldAttempt> attempts) const;
   // q(T) of a flow of so many times the usual steps; empty where it fails.
   [[nodiscard]] std::vector<double> end(const SmallVector& p0, int factor) const;
 
@@ -45,17 +47,20 @@ class FieldNewton {
   [[nodiscard]] long steps_for(const SmallVector& p0) const;
   // Flows from p0; z is the end. False where that fails.
   bool flow(const SmallVector& p0, int factor, std::vector<double>& z) const;
-  // Takes each p0 nearer to the target of its attempt by a flow of a pack.
-  void approach_packed(std::span<const FieldAttempt> attempts, std::span<SmallVector> p0) const;
+  // Takes each p0 nearer to the target by flows of packs, with the inverse Jacobian of a neighbour,
+  // which is corrected on the way. Returns those that it succeeds with.
+  using Near = std::vector<std::size_t>;
+  Near approach_packed(std::span<FieldAttempt> attempts) const;
   void solve_packed(std::span<FieldAttempt> attempts, long& flows) const;
-  // A step of Newton's method, from p0 with these tangents. True where another one is needed; else
-  // the attempt is found, or there is nothing to hope for. `last` is the error before the step.
-  bool improve(const PackedTangent& tangent,
-               FieldAttempt& attempt,
-               SmallVector& p0,
-               double& last) const;
-  // Takes point.p0 to round-off with point.inverse, which is that of an end within `near`.
-  bool polish(const std::vector<double>& target, double near, FieldPoint& point) const;
+  // A step of Newton's method, from p0 with these tangents. `last` is the error before the step.
+  enum class Step {
+    kOn,    // another one is needed
+    kNear,  // the point is known to six digits
+    kLost,  // there is nothing to hope for
+  };
+  [[nodiscard]] Step improve(const PackedTangent& tangent,
+                             FieldAttempt& attempt,
+                             double& last) const;
   // Takes p0 nearer to `target` by flows alone, with the inverse Jacobian of a neighbour.
   void approach(const FieldAttempt& attempt, SmallVector& p0) const;
   bool set_action(FieldPoint& point) const;

@@ -289,7 +289,7 @@ double FieldSolver::action_of(long i) const {
 }
 
 double FieldSolver::verified_action_of(long i) {
-  if (sweep_.points().known(i)) (void)sweep_.verify(i, scales_.q, allowed_error());
+  if (sweep_.points().known(i)) (void)sweep_.verify({&i, 1}, scales_.q, allowed_error());
   return action_of(i);
 }
 

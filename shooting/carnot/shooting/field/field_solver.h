@@ -86,9 +86,9 @@ class FieldSolver {
 
   // In the units of the scene; infinite where nothing is known.
   [[nodiscard]] double action_of(long i) const;
-  // The same, with as many steps as its verification needs. A sweep takes few of them: vehicles on
-  // a grid of 11 x 11 x 12 x 12 points then have actions that are good to 1e-5, which is enough to
-  // tell one way from another, but no answer.
+  // The same, verified. Without packs a sweep takes few steps: vehicles on a grid of
+  // 11 x 11 x 12 x 12 points then have actions that are good to 1e-5, which is enough to tell one
+  // way from another, but no answer.
   [[nodiscard]] double verified_action_of(long i);
   // At the ends, in the units of the scene.
   [[nodiscard]] double allowed_error() const;

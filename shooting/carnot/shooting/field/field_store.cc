@@ -51,8 +51,7 @@ std::vector<int> FieldStore::windings(long i) const {
 }
 
 void FieldStore::put(long i, const FieldPoint& point) {
-  constexpr std::uint8_t kAllThree = 0b111;
-  states_[i].news = kAllThree;
+  states_[i].news = kSlab | kUp | kDown;
   states_[i].doubted = false;
   replace(i, point);
 }
@@ -91,14 +90,6 @@ void FieldStore::read(ByteReader& in) {
   take(states_);
   take(numbers_);
   take(windings_);
-}
-
-bool FieldStore::has_news(long i, int whom) {
-  const auto bit = static_cast<std::uint8_t>(1U << static_cast<unsigned>(whom));
-  std::uint8_t& news = states_[i].news;
-  if ((news & bit) == 0) return false;
-  news = static_cast<std::uint8_t>(news & ~bit);
-  return true;
 }
 
 }  // namespace carnot::internal

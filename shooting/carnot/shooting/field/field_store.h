@@ -51,9 +51,14 @@ class FieldStore {
   void put(long i, const FieldPoint& point);
   // The same without news: the point is the same, more exactly.
   void replace(long i, const FieldPoint& point);
-  // Whether there is news of point i for these neighbours, who are told now: 0 those of its slab,
-  // 1 and 2 those across a border, up and down.
-  bool has_news(long i, int whom);
+  // Who may be told of news: neighbours in the same slab, and those across a border, up and down.
+  enum Whom : std::uint8_t { kSlab = 1, kUp = 2, kDown = 4 };
+  // Whether there is news of point i for these.
+  [[nodiscard]] bool has_news(long i, Whom whom) const { return (states_[i].news & whom) != 0; }
+  // There is none any more.
+  void told(long i, Whom whom) {
+    states_[i].news = static_cast<std::uint8_t>(states_[i].news & ~whom);
+  }
 
   void write(ByteWriter& out) const;
   // What a store of the same sizes has written. Throws DamagedBytes.

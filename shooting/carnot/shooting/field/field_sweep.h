@@ -7,14 +7,19 @@
 //   p(0) + J^-1 dq     and     A + p(T).dq + dq'S dq / 2.
 //
 // Where that is less than the neighbour has, Newton's method on the end point makes an extremal of
-// it (field_wave.h). Sweeps over all points, forward and back, go on until nothing changes.
+// it (field_wave.h). Points tell their neighbours in the order of their actions, as in Dijkstra's
+// algorithm, so that most are reached by their least way first; but many at once, and until nothing
+// changes, since the model is not exact.
 //
-// The grid is cut into slabs across its first axis, which do not depend on the number of threads:
-// each is swept by one thread, then borders of every second pair, then the others. So the result
-// does not depend on the number of threads either.
+// The grid is cut into slabs across its first axis, which do not depend on the number of threads.
+// In each sweep all slabs, one on each thread, tell within themselves what has up to a level of
+// action, then across borders: every second one, then the others. So the result does not depend on
+// the number of threads either. The level rises when nothing below it is left.
 #pragma once
 
 #include <functional>
+#include <queue>
+#include <span>
 #include <vector>
 
 #include "carnot/shooting/boundary_value_problem.h"
@@ -62,10 +67,12 @@ class FieldSweep {
   long reflect(int threads);
   // Points that neighbours promised less than they have, in vain, or which have nothing.
   [[nodiscard]] std::vector<long> doubtful() const;
-  // max |q(T) - target| of a flow of twice as many steps, in these units; infinite where it fails.
-  // Where it is not `allowed` the extremal is made again with more steps. Safe for different points
-  // at once.
-  double verify(long i, const std::vector<double>& units, double allowed);
+  // max |q(T) - target| in these units, of points that are known, by flows with less tolerance, or
+  // twice as many steps, than those that made them; infinite where that fails. Where it is not
+  // `allowed` the extremal is made again. Safe for different points at once.
+  std::vector<double> verify(std::span<const long> points,
+                             const std::vector<double>& units,
+                             double allowed);
 
   // All that is known, between two sweeps or two spreads.
   void write(ByteWriter& out) const;
@@ -75,9 +82,19 @@ class FieldSweep {
  private:
   // Of a spread.
   struct Course {
-    int sweeps = 0;  // so far
-    int quiet = 0;   // of these, the last ones without an improvement
+    long sweeps = 0;   // so far
+    double level = 0;  // of the action up to which neighbours are told
   };
+  // A point that has news. It is out of date where the point has less, or has told it, since.
+  struct News {
+    double action = 0;
+    long point = -1;
+    bool operator>(const News& other) const {
+      return action != other.action ? action > other.action : point > other.point;
+    }
+  };
+  // The least action first.
+  using Queue = std::priority_queue<News, std::vector<News>, std::greater<>>;
   bool seed(long i,
             const std::vector<double>& p0,
             const std::vector<int>& windings,
@@ -85,18 +102,31 @@ class FieldSweep {
             long& flows);
   // Takes the image of point `from` in a mirror to where it is, as seed() would.
   bool reflect(long from, const std::vector<double>& mirror, long& flows);
-  [[nodiscard]] double error_of(long i, const std::vector<double>& units, int factor) const;
-  // Tells the neighbours of point i within [first, last) what it promises them.
-  void push_all(long i, long first, long last, FieldWave& wave);
-  // One sweep over the layers first to last, forward or back. It ends early where `goes_on` says
-  // so, which is asked before every layer.
-  void sweep_slab(long first,
-                  long last,
-                  bool forward,
-                  const std::function<bool()>& goes_on,
-                  FieldCounts& counts);
+  // Of an end of point i.
+  [[nodiscard]] double error_of(long i,
+                                const SmallVector& end,
+                                const std::vector<double>& units) const;
+  // By flows of packs.
+  [[nodiscard]] std::vector<double> packed_errors(std::span<const long> points,
+                                                  const std::vector<double>& units) const;
+  // By a flow of twice as many steps as a sweep takes, or more.
+  double verify_by_steps(long i, const std::vector<double>& units, double allowed);
+  [[nodiscard]] long begin_of(long slab) const { return slab * layers_ / slabs_; }  // a layer
+  // Layers below a border between slabs. The last one is the last of all, which is below the first
+  // one where the axis goes around.
+  [[nodiscard]] std::vector<long> borders() const;
+  // Fills the queues with all points that have news for their slab.
+  void gather();
+  // The least action of what is still to be told, infinite where there is nothing.
+  [[nodiscard]] double least_news();
+  // Tells the neighbours of point i within a slab what it promises them.
+  void push_all(long i, long slab, FieldWave& wave);
+  // Tells all within a slab up to the level. It ends early where `goes_on` says so, which is asked
+  // before every wave.
+  void sweep_slab(long slab, const std::function<bool()>& goes_on, FieldCounts& counts);
   // Tells points across the border above a layer, up and down.
   void cross(long layer, FieldCounts& counts);
+  void queue(long i);
 
   const BoundaryValueProblem& problem_;
   const FieldGrid& grid_;
@@ -104,9 +134,11 @@ class FieldSweep {
   int n_;
   long layer_;  // points of a layer across the first axis
   long layers_;
+  long slabs_;
   FieldStore points_;
   FieldCounts counts_;
   Course course_;
+  std::vector<Queue> queues_;  // of slabs, in a spread
 };
 
 }  // namespace carnot::internal

@@ -46,10 +46,6 @@ void FieldWave::push(const FieldPoint& from, std::size_t axis, const FieldGrid::
   SmallVector dq = SmallVector::Zero(from.p0.size());
   dq[grid_.axes[axis].coordinate] = step.length;
   add(promised(from, step.index, std::move(windings), std::move(dq)));
-  // Two packs of ends. A field of 133,956 unicycles takes 91,374, 90,858 and 90,497 packs of
-  // tangents with waves of 8, 16 and 32, which the points that they await cut short.
-  constexpr std::size_t kFull = 16;
-  if (wave_.size() == kFull) run();
 }
 
 bool FieldWave::awaits(long i) const {
@@ -71,29 +67,32 @@ bool FieldWave::tempts(const Push& push) const {
   return !near || push.windings != points_.windings(push.to);
 }
 
-void FieldWave::run() {
+std::vector<long> FieldWave::run() {
+  less_.clear();
   while (!wave_.empty()) {
     reach();
     wave_.clear();
     for (Push& push : std::exchange(after_, {})) add(std::move(push));
   }
+  return less_;
 }
 
 void FieldWave::reach() {
-  attempts_.clear();
-  std::vector<const Push*> near;
+  counts_.pushes += static_cast<long>(wave_.size());
+  std::vector<FieldAttempt> attempts;
   for (const Push& push : wave_) {
-    ++counts_.pushes;
-    FieldAttempt one = attempt(push.from, grid_.target(push.to, push.windings), push.dq);
-    if (one.point.p0.size() == 0) {
-      take(push, one);
+    attempts.push_back(attempt(push.from, grid_.target(push.to, push.windings), push.dq));
+  }
+  newton_.solve(attempts, counts_.flows);
+  std::vector<Way> ways;
+  for (std::size_t i = 0; i < wave_.size(); ++i) {
+    if (leads_on(wave_[i].from, attempts[i])) {
+      take(wave_[i], attempts[i].point);
     } else {
-      near.push_back(&push);
-      attempts_.push_back(std::move(one));
+      ways.push_back({&wave_[i], wave_[i].from});
     }
   }
-  newton_.solve(attempts_, FieldNewton::Care::kQuick, counts_.flows);
-  for (std::size_t i = 0; i < near.size(); ++i) take(*near[i], attempts_[i]);
+  follow(ways);
 }
 
 FieldAttempt FieldWave::attempt(const FieldPoint& from,
@@ -111,47 +110,64 @@ FieldAttempt FieldWave::attempt(const FieldPoint& from,
   return attempt;
 }
 
-FieldWave::Parts FieldWave::reach_in_parts(const Push& push, FieldPoint& point) {
-  using Care = FieldNewton::Care;
-  constexpr double kLeast = 1.0 / 16;
-  const std::vector<double> end = grid_.target(push.to, push.windings);
-  point = push.from;
-  double part = 0.5;
-  for (double done = 0; done < 1;) {
-    std::vector<double> next = end;
-    for (Eigen::Index j = 0; j < push.dq.size(); ++j) next[j] -= (1 - done - part) * push.dq[j];
-    FieldAttempt one = attempt(point, std::move(next), part * push.dq);
-    const Care care = part > kLeast ? Care::kQuick : Care::kThorough;
-    if (one.point.p0.size() > 0) newton_.solve({&one, 1}, care, counts_.flows);
-    if (leads_on(push.from, one)) {
-      point = one.point;
-      done += part;
-      part = std::min(2 * part, 1 - done);
-      if (done < 1 && !tempts(promised(point, push.to, push.windings, (1 - done) * push.dq))) {
-        return Parts::kNoLess;
-      }
-    } else if (part > kLeast) {
-      part /= 2;
-    } else {
-      return Parts::kNowhere;
-    }
-  }
-  return Parts::kThere;
+FieldAttempt FieldWave::attempt(const Way& way) const {
+  const Push& push = *way.push;
+  std::vector<double> next = grid_.target(push.to, push.windings);
+  const double left = 1 - way.done - way.part;
+  for (Eigen::Index j = 0; j < push.dq.size(); ++j) next[j] -= left * push.dq[j];
+  FieldAttempt one = attempt(way.point, std::move(next), way.part * push.dq);
+  one.rough = left > 0;
+  return one;
 }
 
-void FieldWave::take(const Push& push, const FieldAttempt& attempt) {
+void FieldWave::follow(std::vector<Way>& ways) {
   constexpr double kDoubt = 1e-6;  // relative; the model of a neighbour is not better than that
-  FieldPoint point = attempt.point;
-  const Parts parts = leads_on(push.from, attempt) ? Parts::kThere : reach_in_parts(push, point);
-  if (parts == Parts::kNowhere && push.promise < (1 - kDoubt) * points_.action(push.to)) {
-    points_.doubt(push.to);
+  while (true) {
+    std::vector<FieldAttempt> attempts;
+    std::vector<Way*> open;
+    for (Way& way : ways) {
+      if (way.fate != Way::Fate::kOpen) continue;
+      attempts.push_back(attempt(way));
+      open.push_back(&way);
+    }
+    if (open.empty()) break;
+    newton_.solve(attempts, counts_.flows);
+    for (std::size_t i = 0; i < open.size(); ++i) go_on(*open[i], attempts[i]);
   }
-  if (parts != Parts::kThere) return;
+  for (Way& way : ways) {
+    const Push& push = *way.push;
+    const bool promised = push.promise < (1 - kDoubt) * points_.action(push.to);
+    if (way.fate == Way::Fate::kThere) take(push, std::move(way.point));
+    if (way.fate == Way::Fate::kNowhere && promised) points_.doubt(push.to);
+  }
+}
+
+void FieldWave::go_on(Way& way, const FieldAttempt& attempt) const {
+  const Push& push = *way.push;
+  if (leads_on(push.from, attempt)) {
+    way.point = attempt.point;
+    way.done += way.part;
+    way.part = std::min(2 * way.part, 1 - way.done);
+    const double left = 1 - way.done;
+    if (left <= 0) {
+      way.fate = Way::Fate::kThere;
+    } else if (!tempts(promised(way.point, push.to, push.windings, left * push.dq))) {
+      way.fate = Way::Fate::kNoLess;
+    }
+  } else if (way.part > Way::kLeast) {
+    way.part /= 2;
+  } else {
+    way.fate = Way::Fate::kNowhere;
+  }
+}
+
+void FieldWave::take(const Push& push, FieldPoint point) {
   if (!points_.is_more(push.to, point.action)) return;
   ++counts_.improved;
   point.windings = push.windings;
   point.origin = push.from.origin;
   points_.put(push.to, point);
+  less_.push_back(push.to);
 }
 
 }  // namespace carnot::internal

@@ -10,36 +10,49 @@
 //
 // It gives the column of the largest momentum. A tangent flow of Gauss gives more digits, at three
 // to five times the cost.
+//
+// All lanes of a pack make the same steps and fail together. So momenta of one size share a pack,
+// and where a pack fails it is tried again without the lane that it fails in.
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "carnot/shooting/boundary_value_problem.h"
 #include "carnot/shooting/linear/dense.h"
 
 namespace carnot::internal {
 
+struct PackedEnd {
+  bool reached = false;
+  SmallVector q1;  // q(T)
+  SmallVector p1;  // p(T)
+};
+
 struct PackedTangent {
+  bool reached = false;
   SmallVector q1;  // q(T), to the coarse tolerance
+  SmallVector p1;  // p(T), the same
   SmallMatrix j;   // dq(T)/dp(0)
   SmallMatrix k;   // dp(T)/dp(0)
 };
 
-// How many extremals fill a pack, of ends alone and with derivatives; 0 where the scene or the
-// method has no packs.
-int ends_of_a_pack(const Dynamics& dynamics);
-int tangents_of_a_pack(const Dynamics& dynamics);
+// Whether the scene and the method have packs, and a pack has room for an extremal with its
+// derivatives.
+bool has_packs(const Dynamics& dynamics);
 
-// q(T) of extremals from `problem.from` with these momenta, to the coarse tolerance; at most
-// ends_of_a_pack() of them. False where one of them fails.
-bool packed_ends(const BoundaryValueProblem& problem,
-                 std::span<const SmallVector> p0,
-                 std::span<SmallVector> q1);
+// Of a flow for Newton's method, and of one that is to be right to round-off.
+inline constexpr double kCoarseFlow = 1e-6;
+inline constexpr double kFineFlow = 1e-12;
 
-// The same with derivatives, of at most tangents_of_a_pack(). Of a scene without drift or
-// potential.
-bool packed_tangents(const BoundaryValueProblem& problem,
-                     std::span<const SmallVector> p0,
-                     std::span<PackedTangent> tangents);
+// Ends of extremals from `problem.from` with these momenta, by flows with local errors of about
+// `tolerance`.
+std::vector<PackedEnd> packed_ends(const BoundaryValueProblem& problem,
+                                   std::span<const SmallVector> p0,
+                                   double tolerance);
+
+// The same with derivatives, to the coarse tolerance. Of a scene without drift or potential.
+std::vector<PackedTangent> packed_tangents(const BoundaryValueProblem& problem,
+                                           std::span<const SmallVector> p0);
 
 }  // namespace carnot::internal

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "carnot/numerics/pack.h"
 #include "carnot/system/system_functions.h"
 #include "carnot/transcription/transcription_functions.h"
 
@@ -39,7 +40,10 @@ struct Rescaled {
   }
   // Rows of kLanes numbers.
   void scale_rows(const double* from, int count, double* to) const {
-    for (int i = 0; i < count * kLanes; ++i) to[i] = from[i] * z[i / kLanes];
+    for (int i = 0; i < count; ++i) scale_row(from + i * kLanes, z[i], to + i * kLanes);
+  }
+  static void scale_row(const double* from, double unit, double* to) {
+    (Pack<kLanes>::load(from) * Pack<kLanes>(unit)).store(to);
   }
   [[nodiscard]] StepPlan in_own_time(StepPlan plan) const {
     for (double* t : {&plan.start, &plan.end, &plan.step, &plan.last}) *t *= scales.time;
@@ -91,7 +95,7 @@ Points points_of(const Rescaled& r, const double* t, const double* z, int more_r
   const int size = 2 * r.dof();
   double* const memory = scratch((1 + size + more_rows) * kLanes);
   const Points points{memory, memory + kLanes, memory + (1 + size) * kLanes};
-  for (int l = 0; l < kLanes; ++l) points.t[l] = r.scales.time * t[l];
+  Rescaled::scale_row(t, r.scales.time, points.t);
   r.scale_rows(z, size, points.z);
   return points;
 }
@@ -100,7 +104,10 @@ bool rates(const void* opaque, const double* t, const double* z, double* y, doub
   const Rescaled& r = Rescaled::from(opaque);
   const Points at = points_of(r, t, z, 0);
   if (!r.own.functions->rates(r.system(), at.t, at.z, y, z_dot)) return false;
-  for (int i = 0; i < 2 * r.dof() * kLanes; ++i) z_dot[i] *= r.scales.time / r.z[i / kLanes];
+  for (int i = 0; i < 2 * r.dof(); ++i) {
+    double* const row = z_dot + i * kLanes;
+    Rescaled::scale_row(row, r.scales.time / r.z[i], row);
+  }
   return true;
 }
 
@@ -112,7 +119,8 @@ bool jacobians(
   if (!r.own.functions->jacobians(r.system(), at.t, at.z, weights, jacobian)) return false;
   for (int entry = 0; entry < size * size; ++entry) {
     const double unit = r.scales.time * r.z[entry % size] / r.z[entry / size];
-    for (int l = 0; l < kLanes; ++l) jacobian[entry * kLanes + l] *= unit;
+    double* const row = jacobian + entry * kLanes;
+    Rescaled::scale_row(row, unit, row);
   }
   return true;
 }
