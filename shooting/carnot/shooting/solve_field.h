@@ -2,8 +2,8 @@
 //
 // A few searches give extremals, each neighbour is reached from the one beside it by Newton's
 // method (field/field_sweep.h), mirror images take what their originals have, and what neighbours
-// do not explain is searched again: with three coordinates some thousand points a second on each
-// core, with four some hundred, where searches alone solve some ten.
+// do not explain is searched again: with three coordinates some ten thousand points a second on
+// each core, with four one or two thousand, where searches alone solve some ten.
 #pragma once
 
 #include <vector>

@@ -22,6 +22,20 @@ SmallVector miss_of(const double* q, const std::vector<double>& target) {
   return miss;
 }
 
+// How much larger than in its steps an error of a flow can be at the end. Along a straight stretch
+// of length L of a unicycle it grows like exp(L / beta).
+double growth_of(const SmallMatrix& inverse) { return small_lu_inverse(inverse).norm(); }
+
+// That of a flow whose end is to be known to about `end`, but no more than is usual.
+double tolerance_for(double end, const SmallMatrix& inverse, double usual) {
+  return std::max(kFineFlow, std::min(usual, end / growth_of(inverse)));
+}
+
+double coarse_tolerance(const SmallMatrix& inverse) {
+  constexpr double kEnd = 1e-3;
+  return tolerance_for(kEnd, inverse, kCoarseFlow);
+}
+
 }  // namespace
 
 FieldNewton::FieldNewton(const BoundaryValueProblem& problem)
@@ -85,8 +99,12 @@ FieldNewton::Near FieldNewton::approach_packed(std::span<FieldAttempt> attempts)
   Near near;
   for (int step = 0; step < kMost && !open.empty(); ++step) {
     std::vector<SmallVector> p0;
-    for (const Approach& one : open) p0.push_back(attempts[one.attempt].point.p0);
-    const std::vector<PackedEnd> ends = packed_ends(problem_, p0, kCoarseFlow);
+    std::vector<double> tolerances;
+    for (const Approach& one : open) {
+      p0.push_back(attempts[one.attempt].point.p0);
+      tolerances.push_back(coarse_tolerance(attempts[one.attempt].inverse));
+    }
+    const std::vector<PackedEnd> ends = packed_ends(problem_, p0, tolerances);
     std::vector<Approach> left;
     for (std::size_t k = 0; k < open.size(); ++k) {
       if (!ends[k].reached) continue;
@@ -126,9 +144,15 @@ void FieldNewton::solve_packed(std::span<FieldAttempt> attempts, long& flows) co
   std::vector<std::size_t> near;
   for (int step = 0; step < kMost && !open.empty(); ++step) {
     std::vector<SmallVector> p0;
-    for (const std::size_t i : open) p0.push_back(attempts[i].point.p0);
+    std::vector<SmallMatrix> bases;
+    std::vector<double> tolerances;
+    for (const std::size_t i : open) {
+      p0.push_back(attempts[i].point.p0);
+      bases.push_back(attempts[i].inverse);
+      tolerances.push_back(coarse_tolerance(attempts[i].inverse));
+    }
     flows += static_cast<long>(open.size());
-    const std::vector<PackedTangent> tangents = packed_tangents(problem_, p0);
+    const std::vector<PackedTangent> tangents = packed_tangents(problem_, p0, bases, tolerances);
     std::vector<std::size_t> left;
     for (std::size_t k = 0; k < open.size(); ++k) {
       const std::size_t i = open[k];
@@ -157,14 +181,16 @@ FieldNewton::Step FieldNewton::improve(const PackedTangent& tangent,
   if (!tangent.reached) return Step::kLost;
   const SmallVector miss = miss_of(tangent.q1.data(), attempt.target);
   const double error = largest(miss);
-  const SmallMatrix inverse = small_lu_inverse(tangent.j);
-  if (!(error < kFalls * last) || !inverse.allFinite()) return Step::kLost;
+  const SmallMatrix inverse_along = small_lu_inverse(tangent.j);
+  if (!(error < kFalls * last) || !inverse_along.allFinite()) return Step::kLost;
   last = error;
-  attempt.point.p0 -= inverse * miss;
+  attempt.inverse = tangent.d * inverse_along;
+  attempt.point.p0 -= attempt.inverse * miss;
   if (error > kNear) return Step::kOn;
-  attempt.point.inverse = inverse;
-  attempt.point.sign = static_cast<std::int8_t>(determinant_of(tangent.j).sign);
-  attempt.point.slope = tangent.k * inverse;
+  const int sign = determinant_of(tangent.j).sign * determinant_of(tangent.d).sign;
+  attempt.point.inverse = attempt.inverse;
+  attempt.point.sign = static_cast<std::int8_t>(sign);
+  attempt.point.slope = tangent.k * inverse_along;
   attempt.point.p1 = tangent.p1 - attempt.point.slope * miss;
   return Step::kNear;
 }
@@ -175,14 +201,21 @@ void FieldNewton::polish(std::span<FieldAttempt> attempts) const {
   constexpr double kThere = 1e-12;
   // After a step of Newton's method with coarse tangents a flow need not know more than this.
   constexpr double kFirstFlow = 1e-9;
+  constexpr double kFirstEnd = 1e-7;
+  constexpr double kSteps = 100;  // whose errors add up
   std::vector<double> last(attempts.size(), kInfinity);
   std::vector<std::size_t> open(attempts.size());
   for (std::size_t i = 0; i < open.size(); ++i) open[i] = i;
   for (int step = 0; step < kMost && !open.empty(); ++step) {
     std::vector<SmallVector> some;
-    for (const std::size_t i : open) some.push_back(attempts[i].point.p0);
-    const double tolerance = step == 0 ? kFirstFlow : kFineFlow;
-    const std::vector<PackedEnd> ends = packed_ends(problem_, some, tolerance);
+    std::vector<double> tolerances;
+    for (const std::size_t i : open) {
+      const FieldPoint& point = attempts[i].point;
+      some.push_back(point.p0);
+      tolerances.push_back(step == 0 ? tolerance_for(kFirstEnd, point.inverse, kFirstFlow)
+                                     : kFineFlow);
+    }
+    const std::vector<PackedEnd> ends = packed_ends(problem_, some, tolerances);
     std::vector<std::size_t> left;
     for (std::size_t k = 0; k < open.size(); ++k) {
       if (!ends[k].reached) continue;
@@ -191,10 +224,11 @@ void FieldNewton::polish(std::span<FieldAttempt> attempts) const {
       const SmallVector miss = miss_of(ends[k].q1.data(), attempts[i].target);
       const double error = largest(miss);
       const double falls = error / last[i];
-      if (!(error < last[i]) || falls > kFalls) continue;
+      const bool there = error < kSteps * kFineFlow * growth_of(point.inverse);
+      if (!there && (!(error < last[i]) || falls > kFalls)) continue;
       last[i] = error;
       point.p0 -= point.inverse * miss;
-      if (step == 0 || error * falls > kThere) {
+      if (step == 0 || (!there && error * falls > kThere)) {
         left.push_back(i);
       } else {
         point.p1 = ends[k].p1 - point.slope * miss;

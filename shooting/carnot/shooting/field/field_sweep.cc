@@ -260,7 +260,7 @@ std::vector<double> FieldSweep::packed_errors(std::span<const long> points,
   constexpr double kTolerance = 0.1 * kFineFlow;  // not that of the flows that made the extremals
   std::vector<SmallVector> p0;
   for (const long i : points) p0.push_back(points_.p0(i));
-  const std::vector<PackedEnd> ends = packed_ends(problem_, p0, kTolerance);
+  const std::vector<PackedEnd> ends = packed_ends(problem_, p0, std::vector(p0.size(), kTolerance));
   std::vector<double> errors(points.size(), kUnreached);
   for (std::size_t k = 0; k < points.size(); ++k) {
     if (ends[k].reached) errors[k] = error_of(points[k], ends[k].q1, units);

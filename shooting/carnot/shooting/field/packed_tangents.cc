@@ -68,12 +68,6 @@ class Lanes {
   std::vector<Row> memory_;  // z, z', and what the flow works with
 };
 
-Eigen::Index largest_of(const SmallVector& p0) {
-  Eigen::Index largest = 0;
-  (void)p0.cwiseAbs().maxCoeff(&largest);
-  return largest;
-}
-
 // Those of the list in packs, so many in each. `flow` returns which of them it fails with; the
 // others are tried again without it.
 template <class Flow>
@@ -100,59 +94,83 @@ std::vector<std::size_t> by_size(std::span<const SmallVector> p0) {
   return order;
 }
 
+double least_of(std::span<const double> tolerances, const std::vector<std::size_t>& some) {
+  double least = tolerances[some[0]];
+  for (const std::size_t i : some) least = std::min(least, tolerances[i]);
+  return least;
+}
+
+// The columns of a basis, as long as makes differences that are neither round-off nor bent.
+SmallMatrix moves_along(const SmallMatrix& basis, const SmallVector& p0) {
+  // Of a column that moves the end by one: round-off of 1e-16, which stiff extremals make a million
+  // times as large, leaves four digits.
+  constexpr double kDifference = 1e-6;
+  constexpr double kMost = 1e-5;  // of the momentum
+  SmallMatrix moves = basis;
+  for (Eigen::Index c = 0; c < basis.cols(); ++c) {
+    moves.col(c) *= std::min(kDifference, kMost * p0.norm() / basis.col(c).norm());
+  }
+  return moves;
+}
+
 // Flows of a few extremals and of their neighbours, which fill the lanes one after the other.
 std::optional<int> flow_tangents(const BoundaryValueProblem& problem,
                                  std::span<const SmallVector> p0,
+                                 std::span<const SmallMatrix> bases,
+                                 std::span<const double> tolerances,
                                  const std::vector<std::size_t>& some,
                                  std::span<PackedTangent> tangents) {
-  // Of the largest momentum; between the square root of round-off and what bends.
-  constexpr double kDifference = 1e-7;
   const int n = problem.dynamics.dof;
   const auto count = static_cast<int>(some.size());
   // Idle lanes repeat the last one.
   const auto extremal_of = [n, count](int lane) { return std::min(lane / n, count - 1); };
+  // Lane 1, 2, ... of an extremal moves along column 0, 1, ... without its own one.
+  const auto column_of = [n](int lane, Eigen::Index own) {
+    const Eigen::Index c = lane % n - 1;
+    return c < own ? c : c + 1;
+  };
   Lanes lanes(problem);
-  std::array<double, W> moved{};
+  std::vector<SmallVector> parts(count);  // of p0 along the columns
+  std::vector<Eigen::Index> own(count);
+  for (int i = 0; i < count; ++i) {
+    PackedTangent& tangent = tangents[some[i]];
+    tangent.d = moves_along(bases[some[i]], p0[some[i]]);
+    parts[i] = small_lu_solve(tangent.d, p0[some[i]]);
+    (void)parts[i].cwiseAbs().maxCoeff(&own[i]);
+  }
   for (int lane = 0; lane < W; ++lane) {
     const int i = extremal_of(lane);
     SmallVector p = p0[some[i]];
-    if (lane / n < count && lane % n > 0) {
-      const Eigen::Index own = largest_of(p);
-      const Eigen::Index c = lane % n - 1 + (lane % n - 1 < own ? 0 : 1);
-      moved[lane] = kDifference * std::abs(p[own]);
-      p[c] += moved[lane];
-    }
+    if (lane / n < count && lane % n > 0) p += tangents[some[i]].d.col(column_of(lane, own[i]));
     lanes.begin(lane, p);
   }
-  if (const auto fails = lanes.flow(kCoarseFlow)) return extremal_of(*fails);
+  if (const auto fails = lanes.flow(least_of(tolerances, some))) return extremal_of(*fails);
   if (!lanes.find_rates()) return 0;
   for (int i = 0; i < count; ++i) {
     PackedTangent& tangent = tangents[some[i]];
-    const SmallVector& p = p0[some[i]];
     const int first = i * n;
     tangent.reached = true;
     tangent.q1.resize(n);
     tangent.p1.resize(n);
     tangent.j.resize(n, n);
     tangent.k.resize(n, n);
-    const Eigen::Index own = largest_of(p);
     for (int r = 0; r < n; ++r) {
       tangent.q1[r] = lanes.z(r, first);
       tangent.p1[r] = lanes.z(n + r, first);
-      tangent.j(r, own) = problem.time * lanes.rate(r, first);
-      tangent.k(r, own) = lanes.z(n + r, first) + problem.time * lanes.rate(n + r, first);
+      tangent.j(r, own[i]) = problem.time * lanes.rate(r, first);
+      tangent.k(r, own[i]) = lanes.z(n + r, first) + problem.time * lanes.rate(n + r, first);
     }
     for (int lane = first + 1; lane < first + n; ++lane) {
-      const Eigen::Index c = lane - first - 1 + (lane - first - 1 < own ? 0 : 1);
+      const Eigen::Index c = column_of(lane, own[i]);
       for (int r = 0; r < n; ++r) {
-        tangent.j(r, c) = (lanes.z(r, lane) - lanes.z(r, first)) / moved[lane];
-        tangent.k(r, c) = (lanes.z(n + r, lane) - lanes.z(n + r, first)) / moved[lane];
+        tangent.j(r, c) = lanes.z(r, lane) - lanes.z(r, first);
+        tangent.k(r, c) = lanes.z(n + r, lane) - lanes.z(n + r, first);
       }
-      tangent.j.col(own) -= p[c] * tangent.j.col(c);
-      tangent.k.col(own) -= p[c] * tangent.k.col(c);
+      tangent.j.col(own[i]) -= parts[i][c] * tangent.j.col(c);
+      tangent.k.col(own[i]) -= parts[i][c] * tangent.k.col(c);
     }
-    tangent.j.col(own) /= p[own];
-    tangent.k.col(own) /= p[own];
+    tangent.j.col(own[i]) /= parts[i][own[i]];
+    tangent.k.col(own[i]) /= parts[i][own[i]];
   }
   return std::nullopt;
 }
@@ -165,7 +183,7 @@ bool has_packs(const Dynamics& dynamics) {
 
 std::vector<PackedEnd> packed_ends(const BoundaryValueProblem& problem,
                                    std::span<const SmallVector> p0,
-                                   double tolerance) {
+                                   std::span<const double> tolerances) {
   const int n = problem.dynamics.dof;
   std::vector<PackedEnd> ends(p0.size());
   in_packs(by_size(p0), W, [&](const std::vector<std::size_t>& some) -> std::optional<int> {
@@ -173,7 +191,7 @@ std::vector<PackedEnd> packed_ends(const BoundaryValueProblem& problem,
     for (int lane = 0; lane < W; ++lane) {
       lanes.begin(lane, p0[some[std::min<std::size_t>(lane, some.size() - 1)]]);
     }
-    if (const auto fails = lanes.flow(tolerance)) {
+    if (const auto fails = lanes.flow(least_of(tolerances, some))) {
       return std::min(*fails, static_cast<int>(some.size()) - 1);
     }
     for (std::size_t i = 0; i < some.size(); ++i) {
@@ -192,10 +210,12 @@ std::vector<PackedEnd> packed_ends(const BoundaryValueProblem& problem,
 }
 
 std::vector<PackedTangent> packed_tangents(const BoundaryValueProblem& problem,
-                                           std::span<const SmallVector> p0) {
+                                           std::span<const SmallVector> p0,
+                                           std::span<const SmallMatrix> bases,
+                                           std::span<const double> tolerances) {
   std::vector<PackedTangent> tangents(p0.size());
   in_packs(by_size(p0), W / problem.dynamics.dof, [&](const std::vector<std::size_t>& some) {
-    return flow_tangents(problem, p0, some, tangents);
+    return flow_tangents(problem, p0, bases, tolerances, some, tangents);
   });
   return tangents;
 }
