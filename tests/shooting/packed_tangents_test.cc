@@ -122,23 +122,23 @@ TEST(FieldNewton, FindsTheSameByPacksAndByTangentFlows) {
 TEST(FieldNewton, FindsStiffExtremalsByPacks) {
   constexpr double kFar = 1e4;
   constexpr double kAllowed = 1e-8;
-  const BoundaryValueProblem problem = test::stiff_vehicle({9, 1, 0, 0});
+  const BoundaryValueProblem problem = test::unicycle({0, 0, 0}, {12, 4, 0.5});
   FieldAttempt attempt;
   const std::vector<double> p0 = find_geodesics(problem).geodesics.at(0).p0;
-  attempt.point.p0 = Eigen::Map<const Eigen::VectorXd>(p0.data(), 4);
+  attempt.point.p0 = Eigen::Map<const Eigen::VectorXd>(p0.data(), 3);
   long flows = 0;
   ASSERT_TRUE(FieldNewton(problem).solve(problem.to, attempt.point, flows, 4));
   attempt.inverse = attempt.point.inverse;
   ASSERT_GT(small_lu_inverse(attempt.inverse).norm(), kFar);
-  const Eigen::Vector4d step(0.1, -0.05, 0.02, 0.05);
+  const Eigen::Vector3d step(0.1, -0.1, 0.1);
   attempt.target = problem.to;
-  for (int j = 0; j < 4; ++j) attempt.target[j] += step[j];
+  for (int j = 0; j < 3; ++j) attempt.target[j] += step[j];
   attempt.point.p0 += attempt.inverse * step;
   std::array<FieldAttempt, 1> packed{attempt};
   FieldNewton(problem).solve(packed, flows);
   ASSERT_TRUE(packed[0].found);
   const std::vector<double> end = FieldNewton(problem).end(packed[0].point.p0, 32);
-  for (int j = 0; j < 4; ++j) EXPECT_NEAR(end.at(j), attempt.target[j], kAllowed);
+  for (int j = 0; j < 3; ++j) EXPECT_NEAR(end.at(j), attempt.target[j], kAllowed);
 }
 
 }  // namespace
