@@ -22,10 +22,11 @@ template <const Weights& w>
   return weighted<w>(P(0), [&](int j) { return P::load(f + (j * size + k) * W); });
 }
 
-// Row k of `to` <- row k of z + h sum_j a_ij f_j. The weights are known to the compiler: where they
-// were looked up the sums took as long as the rates of the vehicle.
 template <int i>
 inline constexpr Weights kRow = kA[i];
+
+// Row k of `to` <- row k of z + h sum_j a_ij f_j. The weights are known to the compiler: where they
+// were looked up the sums took as long as the rates of the vehicle.
 template <int i>
 [[gnu::flatten, gnu::noinline]] void combine(
     const double* z, double h, const double* f, int size, double* to) {
@@ -39,9 +40,10 @@ constexpr auto kCombine = []<int... i>(std::integer_sequence<int, i...> /*stages
 }
 (std::make_integer_sequence<int, kStages + 1>{});
 
+using Lanes = std::array<double, W>;
+
 // The error of the step over the tolerance, largest of all components: with e5, e3 the differences
 // to the embedded results, h e5^2 / sqrt(e5^2 + e3^2 / 100).
-using Lanes = std::array<double, W>;
 [[gnu::flatten, gnu::noinline]] Lanes error_ratio(
     const double* z, const double* end, double h, double tolerance, const double* f, int size) {
   P fifth_square(0);

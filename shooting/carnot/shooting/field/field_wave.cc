@@ -136,9 +136,9 @@ void FieldWave::follow(std::vector<Way>& ways) {
   }
   for (Way& way : ways) {
     const Push& push = *way.push;
-    const bool promised = push.promise < (1 - kDoubt) * points_.action(push.to);
+    const bool is_less = push.promise < (1 - kDoubt) * points_.action(push.to);
     if (way.fate == Way::Fate::kThere) take(push, std::move(way.point));
-    if (way.fate == Way::Fate::kNowhere && promised) points_.doubt(push.to);
+    if (way.fate == Way::Fate::kNowhere && is_less) points_.doubt(push.to);
   }
 }
 
