@@ -84,61 +84,32 @@ void FieldNewton::solve(std::span<FieldAttempt> attempts, long& flows) const {
 }
 
 FieldNewton::Near FieldNewton::approach_packed(std::span<FieldAttempt> attempts) const {
-  constexpr int kMost = 4;
-  constexpr double kFalls = 0.5;  // of the error in a step; else a Jacobian of its own pays
-  constexpr double kNear = 1e-2;
-  struct Approach {
-    std::size_t attempt = 0;
-    SmallVector step;  // the last one, and the miss before it
-    SmallVector miss;
-  };
-  std::vector<Approach> open;
+  std::vector<std::size_t> tried;
+  std::vector<SmallVector> p0;
+  std::vector<double> tolerances;
   for (std::size_t i = 0; i < attempts.size(); ++i) {
-    if (attempts[i].point.p0.size() > 0) open.push_back({i, {}, {}});
+    if (attempts[i].point.p0.size() == 0) continue;
+    tried.push_back(i);
+    p0.push_back(attempts[i].point.p0);
+    tolerances.push_back(coarse_tolerance(attempts[i].inverse));
   }
+  const std::vector<PackedEnd> ends = packed_ends(problem_, p0, tolerances);
   Near near;
-  for (int step = 0; step < kMost && !open.empty(); ++step) {
-    std::vector<SmallVector> p0;
-    std::vector<double> tolerances;
-    for (const Approach& one : open) {
-      p0.push_back(attempts[one.attempt].point.p0);
-      tolerances.push_back(coarse_tolerance(attempts[one.attempt].inverse));
-    }
-    const std::vector<PackedEnd> ends = packed_ends(problem_, p0, tolerances);
-    std::vector<Approach> left;
-    for (std::size_t k = 0; k < open.size(); ++k) {
-      if (!ends[k].reached) continue;
-      Approach& one = open[k];
-      auto& [target, inverse, point, rough, found] = attempts[one.attempt];
-      const SmallVector miss = miss_of(ends[k].q1.data(), target);
-      if (step > 0 && !(largest(miss) < kFalls * largest(one.miss))) {
-        if (!(largest(miss) < largest(one.miss))) point.p0 -= one.step;
-        near.push_back(one.attempt);
-        continue;
-      }
-      if (step > 0) {
-        // Broyden's update of an inverse, from what the last step changed.
-        const SmallVector expected = inverse * (miss - one.miss);
-        const SmallVector row = inverse.transpose() * one.step;
-        inverse += (one.step - expected) * row.transpose() / one.step.dot(expected);
-      }
-      one.step = -inverse * miss;
-      one.miss = miss;
-      if (!(largest(one.step) < largest(point.p0))) continue;  // it leads anywhere
-      point.p0 += one.step;
-      if (largest(miss) > kNear && step + 1 < kMost) {
-        left.push_back(one);
-      } else {
-        near.push_back(one.attempt);
-      }
-    }
-    open = std::move(left);
+  for (std::size_t k = 0; k < tried.size(); ++k) {
+    if (!ends[k].reached) continue;
+    FieldAttempt& attempt = attempts[tried[k]];
+    const SmallVector step = attempt.inverse * miss_of(ends[k].q1.data(), attempt.target);
+    if (!(largest(step) < largest(attempt.point.p0))) continue;  // it leads anywhere
+    attempt.point.p0 -= step;
+    near.push_back(tried[k]);
   }
   return near;
 }
 
 void FieldNewton::solve_packed(std::span<FieldAttempt> attempts, long& flows) const {
   constexpr int kMost = 4;
+  // Up to four steps, with Broyden's corrections of the inverse, save a sixth of the tangents.
+  // Fields of 69,696 vehicles then take 1.1, of 133,956 unicycles 0.95 of the time: not worth it.
   Near open = approach_packed(attempts);
   std::vector<double> last(attempts.size(), kInfinity);
   std::vector<std::size_t> near;

@@ -1,8 +1,8 @@
 // Extremals to given ends by Newton's method, from momenta that are nearly right.
 //
-// Many are solved side by side where the scene has packs (packed_tangents.h). Coarse flows with the
-// inverse Jacobian of a neighbour, coarse tangents, and finer flows with the last inverse Jacobian
-// follow each other. Without packs tangent flows do it, one by one.
+// Many are solved side by side where the scene has packs (packed_tangents.h). A coarse flow with
+// the inverse Jacobian of a neighbour, coarse tangents, and finer flows with the last inverse
+// Jacobian follow each other. Without packs tangent flows do it, one by one.
 #pragma once
 
 #include <span>
@@ -47,8 +47,8 @@ class FieldNewton {
   [[nodiscard]] long steps_for(const SmallVector& p0) const;
   // Flows from p0; z is the end. False where that fails.
   bool flow(const SmallVector& p0, int factor, std::vector<double>& z) const;
-  // Takes each p0 nearer to the target by flows of packs, with the inverse Jacobian of a neighbour,
-  // which is corrected on the way. Returns those that it succeeds with.
+  // Takes each p0 nearer to the target by a flow of a pack, with the inverse Jacobian of a
+  // neighbour. Returns those that it succeeds with.
   using Near = std::vector<std::size_t>;
   Near approach_packed(std::span<FieldAttempt> attempts) const;
   void solve_packed(std::span<FieldAttempt> attempts, long& flows) const;
