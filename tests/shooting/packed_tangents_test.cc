@@ -103,7 +103,7 @@ TEST(FieldNewton, FindsTheSameByPacksAndByTangentFlows) {
   attempt.target = FieldNewton(problem).end(attempt.point.p0, 2);
   attempt.point.p0 += Eigen::Vector3d(0.05, -0.05, 0.1);
   std::array<FieldAttempt, 3> packed{attempt, attempt, attempt};
-  packed[1].inverse(0, 0) = -1;  // the sign of det J does not depend on that of the basis
+  packed[1].inverse(0, 0) = -1;  // the basis of the tangents may have any orientation
   std::array<FieldAttempt, 1> alone{attempt};
   long flows = 0;
   FieldNewton(problem).solve(packed, flows);
