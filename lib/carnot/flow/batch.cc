@@ -8,10 +8,10 @@
 namespace carnot {
 namespace {
 
-constexpr int W = kErasedLanes;
+constexpr int kLanes = kErasedLanes;
 
 // A pack in memory.
-struct alignas(64) Row : std::array<double, W> {};
+struct alignas(64) Row : std::array<double, kLanes> {};
 
 // The first points of `z`, one for each of `lanes`; lanes that are idle repeat the last. False,
 // with z as it was, where several fail together.
@@ -19,16 +19,16 @@ bool advance(const AdaptiveFlow& flow, int lanes, double* z, BatchReport& report
   const int size = 2 * flow.functions.dof;
   std::vector<Row> memory(size + adaptive_rows(flow.functions));
   double* const rows = memory.front().data();
-  for (int l = 0; l < W; ++l) {
+  for (int l = 0; l < kLanes; ++l) {
     const double* const from = z + std::min(l, lanes - 1) * size;
-    for (int k = 0; k < size; ++k) rows[k * W + l] = from[k];
+    for (int k = 0; k < size; ++k) rows[k * kLanes + l] = from[k];
   }
-  const AdaptiveReport run = dop853_adaptive(flow, rows, rows + size * W);
+  const AdaptiveReport run = dop853_adaptive(flow, rows, rows + size * kLanes);
   report.evaluations += run.evaluations * lanes;
   if (!run.completed && lanes > 1) return false;
   for (int l = 0; l < lanes; ++l) {
     for (int k = 0; k < size; ++k) {
-      z[l * size + k] = run.completed ? rows[k * W + l] : std::nan("");
+      z[l * size + k] = run.completed ? rows[k * kLanes + l] : std::nan("");
     }
   }
   (run.completed ? report.completed : report.failed) += lanes;
@@ -41,9 +41,9 @@ BatchReport adaptive_batch(const AdaptiveFlow& flow, int count, double* z, int t
   const auto go = [&](int first, int lanes, BatchReport& report) {
     return advance(flow, lanes, z + first * 2 * flow.functions.dof, report);
   };
-  return batch_of((count + W - 1) / W, threads, [&](int pack, BatchReport& report) {
-    const int first = pack * W;
-    const int lanes = std::min(W, count - first);
+  return batch_of((count + kLanes - 1) / kLanes, threads, [&](int pack, BatchReport& report) {
+    const int first = pack * kLanes;
+    const int lanes = std::min(kLanes, count - first);
     if (go(first, lanes, report)) return;
     for (int l = 0; l < lanes; ++l) (void)go(first + l, 1, report);
   });

@@ -225,6 +225,7 @@ double longest_wanted(const std::vector<Extremal>& list, const GeodesicOptions& 
   const auto count = static_cast<std::size_t>(options.count);
   if (options.all || list.size() < count) return options.max_length;
   std::vector<double> lengths;
+  lengths.reserve(list.size());
   for (const Extremal& extremal : list) {
     lengths.push_back(extremal.geodesic.length.value_or(std::numeric_limits<double>::infinity()));
   }

@@ -139,6 +139,7 @@ void FieldNewton::solve_packed(std::span<FieldAttempt> attempts, long& flows) co
     open = left;
   }
   std::vector<FieldAttempt> polished;
+  polished.reserve(near.size());
   for (const std::size_t i : near) polished.push_back(std::move(attempts[i]));
   polish(polished);
   for (std::size_t k = 0; k < near.size(); ++k) attempts[near[k]] = std::move(polished[k]);

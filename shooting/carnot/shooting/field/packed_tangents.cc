@@ -12,13 +12,13 @@
 namespace carnot::internal {
 namespace {
 
-constexpr int W = kErasedLanes;
+constexpr int kLanes = kErasedLanes;
 constexpr int kOrder = 8;
 // Of 140,000 packs of a field of vehicles 97.5 per cent needed fewer than 86 coarse steps; the
 // others, most of them with momenta that lead nowhere, took half of all the time.
 constexpr double kMostCoarseSteps = 128;
 
-struct alignas(64) Row : std::array<double, W> {};
+struct alignas(64) Row : std::array<double, kLanes> {};
 
 // Phase points side by side, and what their flow needs besides.
 class Lanes {
@@ -138,7 +138,7 @@ std::optional<int> flow_tangents(const BoundaryValueProblem& problem,
     parts[i] = small_lu_solve(tangent.d, p0[some[i]]);
     (void)parts[i].cwiseAbs().maxCoeff(&own[i]);
   }
-  for (int lane = 0; lane < W; ++lane) {
+  for (int lane = 0; lane < kLanes; ++lane) {
     const int i = extremal_of(lane);
     SmallVector p = p0[some[i]];
     if (lane / n < count && lane % n > 0) p += tangents[some[i]].d.col(column_of(lane, own[i]));
@@ -178,7 +178,7 @@ std::optional<int> flow_tangents(const BoundaryValueProblem& problem,
 }  // namespace
 
 bool has_packs(const Dynamics& dynamics) {
-  return dynamics.has_adaptive_batch() && dynamics.dof <= W;
+  return dynamics.has_adaptive_batch() && dynamics.dof <= kLanes;
 }
 
 std::vector<PackedEnd> packed_ends(const BoundaryValueProblem& problem,
@@ -186,9 +186,9 @@ std::vector<PackedEnd> packed_ends(const BoundaryValueProblem& problem,
                                    std::span<const double> tolerances) {
   const int n = problem.dynamics.dof;
   std::vector<PackedEnd> ends(p0.size());
-  in_packs(by_size(p0), W, [&](const std::vector<std::size_t>& some) -> std::optional<int> {
+  in_packs(by_size(p0), kLanes, [&](const std::vector<std::size_t>& some) -> std::optional<int> {
     Lanes lanes(problem);
-    for (int lane = 0; lane < W; ++lane) {
+    for (int lane = 0; lane < kLanes; ++lane) {
       lanes.begin(lane, p0[some[std::min<std::size_t>(lane, some.size() - 1)]]);
     }
     if (const auto fails = lanes.flow(least_of(tolerances, some))) {
@@ -214,7 +214,7 @@ std::vector<PackedTangent> packed_tangents(const BoundaryValueProblem& problem,
                                            std::span<const SmallMatrix> bases,
                                            std::span<const double> tolerances) {
   std::vector<PackedTangent> tangents(p0.size());
-  in_packs(by_size(p0), W / problem.dynamics.dof, [&](const std::vector<std::size_t>& some) {
+  in_packs(by_size(p0), kLanes / problem.dynamics.dof, [&](const std::vector<std::size_t>& some) {
     return flow_tangents(problem, p0, bases, tolerances, some, tangents);
   });
   return tangents;
