@@ -47,7 +47,7 @@ class Rates {
   }
 
   void draw(const std::vector<int>& coordinates, std::vector<double>& q) {
-    constexpr double kRoom = 10;  // of coordinates without a period
+    constexpr double kRoom = 10;  // units, of coordinates without a period
     for (const int j : coordinates) {
       const double room = is_angle(j) ? period_of(j) : kRoom;
       q[j] = problem_.from[j] + std::uniform_real_distribution<double>(-room, room)(random_);
@@ -56,7 +56,8 @@ class Rates {
 
   // From the best of some configurations upwards, one angle after the other.
   double rate_of(int j) {
-    // What is left of the period at the end: the largest value is missed by a few times its square.
+    // The last step, in periods. A smooth maximum is then missed by 1e-5 or so, far below the
+    // margin.
     constexpr double kFinest = 1e-3;
     constexpr double kMargin = 1.01;
     constexpr int kConfigurations = 64;

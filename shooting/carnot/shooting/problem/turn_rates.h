@@ -15,10 +15,11 @@
 
 namespace carnot::internal {
 
-// The rates of the coordinates with a period, in 1 / length; infinite for all others, where nothing
-// is known, and where there is a potential. Nothing is known where H(q, e_j) depends on coordinates
-// without a period, too, since these go on for ever. Those of the problem start at its `from`, and
-// are moved by a few of its units. Costs some thousand evaluations of H.
+// The rates of the coordinates with a period, in 1 / length. They are infinite for all others,
+// where there is a potential, and where H(q, e_j) depends on a coordinate without a period: that
+// may go on for ever. Whether it does is tried at random configurations, up to ten units from
+// `problem.from`, so the problem should be in its natural scales. Costs some thousand evaluations
+// of H.
 std::vector<double> turn_rates(const BoundaryValueProblem& problem);
 
 // No path from problem.from to problem.to is shorter.
