@@ -122,10 +122,9 @@ class Atlas {
     std::vector<FieldAxis> axes;
     for (const Axis& axis : list_->axes()) axes.push_back({axis.coordinate, axis.values});
     const BoundaryValueProblem asked = problem_between(run_.dynamics, problem(0).ends);
-    FieldOptions options;
+    FieldOptions options = field_;
     options.search = options_;
     options.threads = run_.threads;
-    options.check = parse_integer("--check", call_.check, 0, 1000000);
     const std::string path = call_.output + ".journal";
     const bool goes_on = call_.resume && std::filesystem::exists(path);
     Journal journal(path, journal_call(call_, run_, *list_), call_.resume);
@@ -177,7 +176,9 @@ class Atlas {
     return deliver(result, run_.destination);
   }
 
-  void check_field() const {
+  void check_field() {
+    field_.branches = static_cast<int>(parse_integer("--branches", call_.branches, 1, 64));
+    field_.check = parse_integer("--check", call_.check, 0, 1000000);
     if (list_->axes().empty()) refuse_missing("--grid", "a grid of targets for --field");
     const SearchOptions& search = call_.search;
     if (options_.all || options_.count > 1) {
@@ -345,6 +346,7 @@ class Atlas {
   std::vector<std::string> arguments_;
   Run run_;
   GeodesicOptions options_;
+  FieldOptions field_;  // `branches` and `check` of it
   std::unique_ptr<ProblemList> list_;
   std::unique_ptr<Models> models_;
   std::unique_ptr<AtlasPlot> plot_;  // where there is to be one
@@ -375,6 +377,10 @@ void add_atlas(CLI::App& app, Invocation& invocation) {
   add("--output", call->output, "FILE", "the result: .csv, .jsonl, .h5, and .field with --field");
   add("--plot", call->run.destination.plot, "FILE", "slices of a grid as a .png, .svg or .pdf");
   atlas.add_flag("--field", call->field, "least actions of a grid from neighbour to neighbour");
+  add("--branches",
+      call->branches,
+      "K",
+      "geodesics that a field keeps for each point, to find the least in the end (1)");
   add("--check", call->check, "N", "points of a field that are searched once more (100)");
   atlas.add_flag("--resume", call->resume, "go on where the same call was ended");
   atlas.add_flag("--no-times", call->no_times, "leave out seconds, the only thing that differs");

@@ -39,6 +39,7 @@ Json identity_of(const AtlasCall& call, const Run& run, Json problems) {
             {"discs", search.asked.discs},
             {"trajectories", call.trajectories},
             {"field", call.field},
+            {"branches", call.branches},
             {"check", call.check}}},
           {"problems", std::move(problems)}};
 }

@@ -20,6 +20,7 @@ struct AtlasCall {
   bool resume = false;
   bool no_times = false;
   bool field = false;
+  std::string branches = "1";
   std::string check = "100";
 };
 

@@ -279,6 +279,9 @@ TEST_F(AtlasTest, FieldsAgreeWithSearches) {
   EXPECT_EQ(report["violations"], 0);
   EXPECT_EQ(report["settled"], true);
   EXPECT_EQ(outcome.json()["solved"], 3 * 5 * 12);
+  const Outcome two = sandbox.run(with(grid, {"two.csv", "--field", "--branches", "2"}));
+  ASSERT_EQ(two.status, 0) << two.err;
+  EXPECT_GT(two.json()["field"]["improved"], report["improved"].get<long>() + 3 * 5 * 12 / 2);
   ASSERT_EQ(sandbox.run(with(grid, {"a.csv"})).status, 0);
   const std::vector<Words> field = cells_of(text_of("field.csv"));
   const std::vector<Words> searched = cells_of(text_of("a.csv"));
@@ -324,6 +327,8 @@ TEST_F(AtlasTest, FieldsGoOn) {
   EXPECT_EQ(text_of("b.jsonl"), text_of("whole.jsonl"));
   expect_refused(with(grid, {"a.jsonl"}), HasSubstr("--resume to go on"), sandbox);
   expect_refused(with(grid, {"a.jsonl", "--resume", "--seed", "1"}), HasSubstr("seed is"), sandbox);
+  expect_refused(
+      with(grid, {"a.jsonl", "--resume", "--branches", "2"}), HasSubstr("branches is"), sandbox);
   const Outcome stopped = sandbox.run(with(grid, {"a.jsonl", "--resume"}), stopped_after("0.2"));
   EXPECT_EQ(stopped.status, 130);
   EXPECT_THAT(stopped.err, HasSubstr("--resume goes on"));
@@ -419,6 +424,10 @@ TEST_F(AtlasTest, RefusesBadInput) {
   refused({"--random", "3", "--plot", "a.png"}, "two axes");
   refused({"--from", "0,0,0", "--to", "0,0,0", "--grid", "x=0:1:2", "--field", "--count", "2"},
           "one geodesic");
+  for (const char* counted : {"--branches", "--check"}) {
+    refused({"--from", "0,0,0", "--to", "0,0,0", "--grid", "x=0:1:2", "--field", counted, "-1"},
+            counted);
+  }
   expect_refused({"atlas", "unicycle", "--random", "3", "--output", "a.field"},
                  HasSubstr("unknown ending"),
                  sandbox);

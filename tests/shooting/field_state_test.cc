@@ -96,11 +96,15 @@ TEST_F(FieldState, IsRefusedWhereItIsDamaged) {
 }
 
 TEST_F(FieldState, IsThatOfOneField) {
-  std::istringstream text(states.back());
-  FieldOptions options = quick();
-  options.state = &text;
-  options.search.seed = 1;
-  EXPECT_THROW(vehicles(options), DamagedState);
+  FieldOptions other_seed = quick();
+  other_seed.search.seed = 1;
+  FieldOptions other_size = quick();
+  other_size.branches = 2;
+  for (FieldOptions options : {other_seed, other_size}) {
+    std::istringstream text(states.back());
+    options.state = &text;
+    EXPECT_THROW(vehicles(options), DamagedState);
+  }
 }
 
 }  // namespace

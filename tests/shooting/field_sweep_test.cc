@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <numbers>
+
 #include "carnot/shooting/find_geodesics.h"
 #include "shooting/problems.h"
 
@@ -12,7 +15,7 @@ namespace {
 struct AcrossTheAxis : testing::Test {
   const BoundaryValueProblem problem = test::heisenberg_group({0.25, 0, 0.5});
   const FieldGrid grid{{0, 0, 0.5}, {{0, {0.25, 0.15, 0.05, -0.05, -0.15, -0.25}, false, 0}}};
-  FieldSweep sweep{problem, grid};
+  FieldSweep sweep{problem, grid, 1};
 
   void SetUp() override {
     const GeodesicReport report = find_geodesics(problem);
@@ -44,7 +47,7 @@ TEST(FieldSweep, MakesExtremalsAgainThatAreNotExact) {
   for (const bool packs : {true, false}) {
     BoundaryValueProblem own = problem;
     own.dynamics.kernel.fills_packs = packs;
-    FieldSweep sweep(own, grid);
+    FieldSweep sweep(own, grid, 1);
     ASSERT_TRUE(sweep.seed(0, report.geodesics.at(0).p0, {0}, 0));
     const std::vector<long> points{0};
     const std::vector<double> units(4, 1.0);
@@ -93,6 +96,35 @@ TEST_F(AcrossTheAxis, IsTheSameInMirrors) {
   EXPECT_EQ(sweep.reflect(2), 0);
   for (long i = 0; i < 3; ++i) {
     EXPECT_NEAR(sweep.points().action(5 - i), sweep.points().action(i), 1e-10) << i;
+  }
+}
+
+// Unicycles to a half turn, along a line: turning left and turning right are as short at one point
+// of it. A point that keeps two extremals has both.
+TEST(FieldSweep, KeepsAsManyWaysAsThereAreBranches) {
+  const double half = std::numbers::pi;
+  const BoundaryValueProblem problem = test::unicycle({0, 0, 0}, {0, 0.3, half});
+  const FieldGrid grid{problem.to,
+                       {{0, {-0.6, -0.3, 0, 0.3, 0.6}, false, 0}, {2, {half}, false, 2 * half}}};
+  const auto search = [&](long i, const std::vector<int>& windings) {
+    return find_geodesics(test::unicycle({0, 0, 0}, grid.target(i, windings))).geodesics.at(0);
+  };
+  const std::vector<int> left{0, 0};
+  const std::vector<int> right{0, -1};
+  for (const int branches : {1, 2}) {
+    FieldSweep sweep(problem, grid, branches);
+    ASSERT_TRUE(sweep.seed(0, search(0, left).p0, left, 0));
+    ASSERT_TRUE(sweep.seed(4, search(4, right).p0, right, 1));
+    ASSERT_EQ(sweep.spread(1, {}), Spread::kSettled);
+    for (long i = 0; i < grid.size(); ++i) {
+      const FieldStore& points = sweep.points();
+      const double by_left = search(i, left).action;
+      const double by_right = search(i, right).action;
+      EXPECT_NEAR(points.action(i), std::min(by_left, by_right), 1e-9) << i;
+      if (branches == 1) continue;
+      const double other = points.action(points.slot(i, 0)) + points.action(points.slot(i, 1));
+      EXPECT_NEAR(other, by_left + by_right, 1e-9) << i;
+    }
   }
 }
 

@@ -13,7 +13,7 @@ namespace {
 struct Between : testing::Test {
   const BoundaryValueProblem problem = test::heisenberg_group({0.5, 0.1, 0.5});
   const FieldGrid grid{{0.5, 0.1, 0.5}, {{0, {0.45, 0.5, 0.55}, false, 0}}};
-  FieldStore points{3, 3, 1};
+  FieldStore points{3, 3, 1, 1};
   FieldCounts counts;
   FieldWave wave{problem, grid, points, counts};
 
@@ -34,7 +34,9 @@ struct Between : testing::Test {
     ASSERT_NO_FATAL_FAILURE(put(0, search(0).geodesics.at(0)));
     ASSERT_NO_FATAL_FAILURE(put(2, search(2).geodesics.at(1)));
   }
-  void push(long i) { wave.push(points.point(i), 0, grid.step(i, 0, i == 0 ? 1 : -1)); }
+  void push(long i) {
+    wave.push(points.point(points.best(i)), 0, grid.step(i, 0, i == 0 ? 1 : -1));
+  }
 };
 
 TEST_F(Between, ReachesWhatWaits) {

@@ -21,10 +21,11 @@ FieldAxis axis(int coordinate, double first, double step, int count) {
 }
 
 // Of the unicycle, modulo whole turns.
-Field unicycles(int threads) {
+Field unicycles(int threads, int branches = 1) {
   FieldOptions options;
   options.search.mod_angles = true;
   options.threads = threads;
+  options.branches = branches;
   options.check = 10;
   return solve_field(test::unicycle({0, 0, 0}, {0, 0, 0}),
                      {axis(0, -2, 0.25, 17), axis(1, -2, 0.25, 17), axis(2, -kPi, kPi / 9, 18)},
@@ -109,6 +110,16 @@ TEST(SolveField, DoesNotDependOnTheNumberOfThreads) {
 
 // To (0, 0, z) of the Heisenberg group a circle of area z leads: A = 2 pi |z|. The axis is
 // conjugate.
+TEST(SolveField, FindsTheSameWithMoreBranches) {
+  constexpr double kSame = 1e-10;
+  const Field one = unicycles(2, 1);
+  const Field three = unicycles(2, 3);
+  EXPECT_GT(three.improved, 2 * one.improved);
+  for (std::size_t i = 0; i < one.action.size(); ++i) {
+    EXPECT_NEAR(one.action[i], three.action[i], kSame * (1 + one.action[i])) << i;
+  }
+}
+
 TEST(SolveField, ReachesTheCutLocus) {
   FieldOptions options;
   options.check = 20;
@@ -180,6 +191,9 @@ TEST(SolveField, StopsAndRefuses) {
   EXPECT_FALSE(
       solve_field(test::unicycle({0, 0, 0}, {0, 0, 0}), {axis(0, 0, 1, 5)}, options).finished);
   const BoundaryValueProblem unicycle = test::unicycle({0, 0, 0}, {0, 1, 0});
+  FieldOptions none;
+  none.branches = 0;
+  EXPECT_THROW(solve_field(unicycle, {axis(0, 0, 1, 2)}, none), std::invalid_argument);
   EXPECT_THROW(solve_field(unicycle, {}), std::invalid_argument);
   EXPECT_THROW(solve_field(unicycle, {{0, {0, 1, 3}}}), std::invalid_argument);
   EXPECT_THROW(solve_field(unicycle, {{3, {0, 1}}}), std::invalid_argument);

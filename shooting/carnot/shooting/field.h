@@ -30,6 +30,10 @@ struct FieldAxis {
 struct FieldOptions {
   GeodesicOptions search;  // of the searches; `mod_angles` and `tolerance` are of the whole
   int threads = 0;         // 0: all cores
+  // Extremals of least action that are kept for each point, >= 1. One is enough for most scenes.
+  // Where a way is the shortest one in two places, and not between them, only a point that keeps
+  // another one, too, leads from place to place. Each takes as much time and memory as the first.
+  int branches = 1;
   // Points that are searched once more in the end, with another seed, and from which a neighbour is
   // searched for the triangle inequality.
   long check = 100;

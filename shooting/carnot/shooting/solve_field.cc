@@ -91,6 +91,7 @@ Field solve_field(const BoundaryValueProblem& problem,
   require(static_cast<int>(problem.to.size()) == problem.dynamics.dof,
           "the target of a field has " + std::to_string(problem.to.size()) +
               " components, the scene has " + std::to_string(problem.dynamics.dof));
+  require(options.branches >= 1, "a field keeps at least one extremal for each point");
   validate(problem, axes);
   const FieldGrid grid = grid_of(problem, axes, options.search.mod_angles);
   const BoundaryValueProblem regular = to_a_regular_point(problem, grid);

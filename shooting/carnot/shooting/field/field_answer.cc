@@ -53,7 +53,7 @@ void FieldSolver::verify(Field& field) {
     for (std::size_t k = 0; k < points.size(); ++k) {
       const long i = points[k];
       field.error[i] = errors[k];
-      const FieldPoint point = sweep_.points().point(i);
+      const FieldPoint point = sweep_.points().point(sweep_.points().best(i));
       field.action[i] = point.action * scales_.action;
       field.label[i] = labels_[point.origin];
       for (int j = 0; j < n; ++j) field.p0[i * n + j] = point.p0[j] * scales_.momentum(j);

@@ -49,7 +49,7 @@ FieldSolver::FieldSolver(const BoundaryValueProblem& problem,
       scales_(scales_of(problem, grid)),
       scaled_(rescaled(own_, scales_)),
       grid_(in_scales(grid, scales_)),
-      sweep_(scaled_, grid_),
+      sweep_(scaled_, grid_, options.branches),
       searches_(own_, own_grid_) {}
 
 Field FieldSolver::run() {
@@ -312,6 +312,7 @@ std::vector<double> FieldSolver::identity() const {
   }
   numbers.push_back(own_.time);
   numbers.push_back(static_cast<double>(options_.search.seed));
+  numbers.push_back(options_.branches);
   return numbers;
 }
 

@@ -6,27 +6,80 @@
 namespace carnot::internal {
 namespace {
 
-std::size_t numbers_of_a_point(int n) {
+std::size_t numbers_of_a_slot(int n) {
   return static_cast<std::size_t>(2 * n + n * n + n * (n + 1) / 2);
 }
 
 }  // namespace
 
-FieldStore::FieldStore(long points, int n, std::size_t axes)
+FieldStore::FieldStore(long points, int n, std::size_t axes, int branches)
     : n_(n),
       axes_(axes),
-      width_(numbers_of_a_point(n)),
-      states_(points),
-      numbers_(points * width_),
-      windings_(points * axes) {}
+      branches_(branches),
+      width_(numbers_of_a_slot(n)),
+      states_(points * branches),
+      numbers_(points * branches * width_),
+      windings_(points * branches * axes),
+      doubted_(points) {}
 
-FieldPoint FieldStore::point(long i) const {
-  const State& state = states_[i];
+FieldSlot FieldStore::best(long i) const {
+  FieldSlot best = slot(i, 0);
+  for (int b = 1; b < branches_ && is_filled(slot(i, b)); ++b) {
+    if (action(slot(i, b)) < action(best)) best = slot(i, b);
+  }
+  return best;
+}
+
+bool FieldStore::is_more(FieldSlot slot, double action) const {
+  constexpr double kBetter = 1e-10;  // relative; less is round-off
+  return !is_filled(slot) || action < (1 - kBetter) * states_[at(slot)].action;
+}
+
+bool FieldStore::wants(long i, double action) const {
+  for (int b = 0; b < branches_; ++b) {
+    if (is_more(slot(i, b), action)) return true;
+  }
+  return false;
+}
+
+bool FieldStore::is_same(FieldSlot slot, const FieldPoint& point) const {
+  constexpr double kSame = 1e-4;  // of the largest momentum
+  const SmallVector there = p0(slot);
+  const double apart = (point.p0 - there).cwiseAbs().maxCoeff();
+  return apart <= kSame * there.cwiseAbs().maxCoeff() && windings(slot) == point.windings;
+}
+
+std::optional<FieldSlot> FieldStore::place_of(long i, const FieldPoint& point) const {
+  FieldSlot place = slot(i, 0);
+  for (int b = 0; b < branches_; ++b) {
+    const FieldSlot next = slot(i, b);
+    if (!is_filled(next)) return next;
+    if (is_same(next, point)) {
+      place = next;
+      break;
+    }
+    if (action(next) > action(place)) place = next;
+  }
+  if (!is_more(place, point.action)) return std::nullopt;
+  return place;
+}
+
+std::optional<FieldSlot> FieldStore::put(long i, const FieldPoint& point) {
+  const std::optional<FieldSlot> place = place_of(i, point);
+  if (!place) return std::nullopt;
+  if (!known(i) || point.action < action(i)) doubted_[i] = 0;
+  states_[at(*place)].news = kSlab | kUp | kDown;
+  replace(*place, point);
+  return place;
+}
+
+FieldPoint FieldStore::point(FieldSlot slot) const {
+  const State& state = states_[at(slot)];
   FieldPoint point;
   point.sign = state.sign;
   point.origin = state.origin;
   point.action = state.action;
-  const double* next = numbers(i);
+  const double* next = numbers(slot);
   point.p0 = Eigen::Map<const Eigen::VectorXd>(next, n_);
   next += n_;
   point.p1 = Eigen::Map<const Eigen::VectorXd>(next, n_);
@@ -37,32 +90,26 @@ FieldPoint FieldStore::point(long i) const {
   for (int r = 0; r < n_; ++r) {
     for (int c = 0; c <= r; ++c) point.slope(r, c) = point.slope(c, r) = *next++;
   }
-  point.windings = windings(i);
+  point.windings = windings(slot);
   return point;
 }
 
-SmallVector FieldStore::p0(long i) const {
-  return Eigen::Map<const Eigen::VectorXd>(numbers(i), n_);
+SmallVector FieldStore::p0(FieldSlot slot) const {
+  return Eigen::Map<const Eigen::VectorXd>(numbers(slot), n_);
 }
 
-std::vector<int> FieldStore::windings(long i) const {
-  const auto* const begin = &windings_[i * axes_];
+std::vector<int> FieldStore::windings(FieldSlot slot) const {
+  const auto* const begin = &windings_[at(slot) * axes_];
   return {begin, begin + axes_};
 }
 
-void FieldStore::put(long i, const FieldPoint& point) {
-  states_[i].news = kSlab | kUp | kDown;
-  states_[i].doubted = false;
-  replace(i, point);
-}
-
-void FieldStore::replace(long i, const FieldPoint& point) {
-  State& state = states_[i];
+void FieldStore::replace(FieldSlot slot, const FieldPoint& point) {
+  State& state = states_[at(slot)];
   state.known = true;
   state.sign = point.sign;
   state.origin = point.origin;
   state.action = point.action;
-  double* next = &numbers_[i * width_];
+  double* next = &numbers_[at(slot) * width_];
   next = std::copy_n(point.p0.data(), n_, next);
   next = std::copy_n(point.p1.data(), n_, next);
   next = std::copy_n(point.inverse.data(), n_ * n_, next);
@@ -70,7 +117,7 @@ void FieldStore::replace(long i, const FieldPoint& point) {
     for (int c = 0; c <= r; ++c) *next++ = 0.5 * (point.slope(r, c) + point.slope(c, r));
   }
   std::transform(
-      point.windings.begin(), point.windings.end(), &windings_[i * axes_], [](int turns) {
+      point.windings.begin(), point.windings.end(), &windings_[at(slot) * axes_], [](int turns) {
         return static_cast<std::int16_t>(turns);
       });
 }
@@ -79,6 +126,7 @@ void FieldStore::write(ByteWriter& out) const {
   out.add(states_);
   out.add(numbers_);
   out.add(windings_);
+  out.add(doubted_);
 }
 
 void FieldStore::read(ByteReader& in) {
@@ -90,6 +138,7 @@ void FieldStore::read(ByteReader& in) {
   take(states_);
   take(numbers_);
   take(windings_);
+  take(doubted_);
 }
 
 }  // namespace carnot::internal

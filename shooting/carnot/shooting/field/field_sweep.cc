@@ -17,14 +17,14 @@ constexpr long kMostSlabs = 16;
 
 }  // namespace
 
-FieldSweep::FieldSweep(const BoundaryValueProblem& problem, const FieldGrid& grid)
+FieldSweep::FieldSweep(const BoundaryValueProblem& problem, const FieldGrid& grid, int branches)
     : problem_(problem),
       grid_(grid),
       newton_(problem),
       n_(problem.dynamics.dof),
       layers_(static_cast<long>(grid.axes.front().values.size())),
       slabs_(std::clamp(layers_ / 2, 1L, kMostSlabs)),
-      points_(grid.size(), n_, grid.axes.size()) {
+      points_(grid.size(), n_, grid.axes.size(), branches) {
   layer_ = grid.size() / layers_;
 }
 
@@ -38,9 +38,7 @@ bool FieldSweep::seed(long i,
   point.windings = windings;
   point.origin = origin;
   if (!newton_.solve(target(i, windings), point, flows)) return false;
-  if (!points_.is_more(i, point.action)) return false;
-  points_.put(i, point);
-  return true;
+  return points_.put(i, point).has_value();
 }
 
 std::vector<long> FieldSweep::borders() const {
@@ -49,43 +47,47 @@ std::vector<long> FieldSweep::borders() const {
   return layers;
 }
 
-void FieldSweep::queue(long i) {
-  const long layer = i / layer_;
+void FieldSweep::queue(FieldSlot slot) {
+  const long layer = points_.point_of(slot) / layer_;
   long slab = layer * slabs_ / layers_;
   while (begin_of(slab + 1) <= layer) ++slab;
-  queues_[slab].push({points_.action(i), i});
+  queues_[slab].push({points_.action(slot), slot});
 }
 
 void FieldSweep::gather() {
   queues_.assign(slabs_, {});
-  for (long i = 0; i < points_.size(); ++i) {
-    if (points_.known(i) && points_.has_news(i, FieldStore::kSlab)) queue(i);
+  for (long layer = 0; layer < layers_; ++layer) {
+    for_layer(layer, [this](FieldSlot slot) {
+      if (points_.has_news(slot, FieldStore::kSlab)) queue(slot);
+    });
   }
 }
 
 double FieldSweep::least_news() {
   double least = kUnreached;
   for (Queue& queue : queues_) {
-    while (!queue.empty() && !points_.has_news(queue.top().point, FieldStore::kSlab)) queue.pop();
+    while (!queue.empty() && !points_.has_news(queue.top().slot, FieldStore::kSlab)) queue.pop();
     if (!queue.empty()) least = std::min(least, queue.top().action);
   }
   for (const long border : borders()) {
     for (const auto& [layer, direction] : {std::pair{border, 1}, {(border + 1) % layers_, -1}}) {
       const FieldStore::Whom whom = direction > 0 ? FieldStore::kUp : FieldStore::kDown;
-      for (long i = layer * layer_; i < (layer + 1) * layer_; ++i) {
-        if (!points_.known(i) || !points_.has_news(i, whom)) continue;
-        if (grid_.step(i, 0, direction).index >= 0) least = std::min(least, points_.action(i));
-      }
+      for_layer(layer, [&, step = direction](FieldSlot slot) {
+        if (!points_.has_news(slot, whom)) return;
+        const bool is_neighbour = grid_.step(points_.point_of(slot), 0, step).index >= 0;
+        if (is_neighbour) least = std::min(least, points_.action(slot));
+      });
     }
   }
   return least;
 }
 
-void FieldSweep::push_all(long i, long slab, FieldWave& wave) {
+void FieldSweep::push_all(FieldSlot slot, long slab, FieldWave& wave) {
   const long first = begin_of(slab) * layer_;
   const long last = begin_of(slab + 1) * layer_;
-  const FieldPoint from = points_.point(i);
-  points_.told(i, FieldStore::kSlab);
+  const long i = points_.point_of(slot);
+  const FieldPoint from = points_.point(slot);
+  points_.told(slot, FieldStore::kSlab);
   for (std::size_t axis = 0; axis < grid_.axes.size(); ++axis) {
     for (const int direction : {-1, 1}) {
       const FieldGrid::Step step = grid_.step(i, axis, direction);
@@ -97,21 +99,21 @@ void FieldSweep::push_all(long i, long slab, FieldWave& wave) {
 void FieldSweep::sweep_slab(long slab, const std::function<bool()>& goes_on, FieldCounts& counts) {
   Queue& news = queues_[slab];
   FieldWave wave(problem_, grid_, points_, counts);
-  std::vector<long> waiting;  // for what may make them better
+  std::vector<FieldSlot> waiting;  // for what may make them better
   while (goes_on()) {
     while (!news.empty() && news.top().action <= course_.level && !wave.full()) {
-      const long i = news.top().point;
+      const FieldSlot next = news.top().slot;
       news.pop();
-      if (!points_.has_news(i, FieldStore::kSlab)) continue;
-      if (wave.awaits(i)) {
-        waiting.push_back(i);
+      if (!points_.has_news(next, FieldStore::kSlab)) continue;
+      if (wave.awaits(points_.point_of(next))) {
+        waiting.push_back(next);
       } else {
-        push_all(i, slab, wave);
+        push_all(next, slab, wave);
       }
     }
     if (wave.empty()) return;
-    for (const long i : wave.run()) queue(i);
-    for (const long i : waiting) queue(i);
+    for (const FieldSlot next : wave.run()) queue(next);
+    for (const FieldSlot next : waiting) queue(next);
     waiting.clear();
   }
 }
@@ -121,17 +123,16 @@ void FieldSweep::cross(long layer, FieldCounts& counts) {
     const FieldStore::Whom whom = direction > 0 ? FieldStore::kUp : FieldStore::kDown;
     FieldWave wave(problem_, grid_, points_, counts);
     const auto run = [&] {
-      for (const long i : wave.run()) queue(i);
+      for (const FieldSlot slot : wave.run()) queue(slot);
     };
     const long from = direction > 0 ? layer : (layer + 1) % layers_;
-    for (long k = from * layer_; k < (from + 1) * layer_; ++k) {
-      if (!points_.known(k) || points_.action(k) > course_.level) continue;
-      if (!points_.has_news(k, whom)) continue;
-      points_.told(k, whom);
-      const FieldGrid::Step step = grid_.step(k, 0, direction);
-      if (step.index >= 0) wave.push(points_.point(k), 0, step);
+    for_layer(from, [&](FieldSlot slot) {
+      if (!points_.has_news(slot, whom) || points_.action(slot) > course_.level) return;
+      points_.told(slot, whom);
+      const FieldGrid::Step step = grid_.step(points_.point_of(slot), 0, direction);
+      if (step.index >= 0) wave.push(points_.point(slot), 0, step);
       if (wave.full()) run();
-    }
+    });
     run();
   }
 }
@@ -196,7 +197,7 @@ void FieldSweep::read(ByteReader& in) {
 }
 
 bool FieldSweep::reflect(long from, const std::vector<double>& mirror, long& flows) {
-  const FieldPoint point = points_.point(from);
+  const FieldPoint point = points_.point(points_.best(from));
   const FieldGrid::Image image = grid_.image(from, point.windings, mirror);
   std::vector<double> p0(n_);
   for (int j = 0; j < n_; ++j) p0[j] = mirror[j] * point.p0[j];
@@ -246,10 +247,10 @@ std::vector<long> FieldSweep::doubtful() const {
   return list;
 }
 
-double FieldSweep::error_of(long i,
+double FieldSweep::error_of(FieldSlot slot,
                             const SmallVector& end,
                             const std::vector<double>& units) const {
-  const std::vector<double> to = target(i, points_.windings(i));
+  const std::vector<double> to = target(points_.point_of(slot), points_.windings(slot));
   double error = 0;
   for (int j = 0; j < n_; ++j) error = std::max(error, units[j] * std::abs(end[j] - to[j]));
   return error;
@@ -259,11 +260,11 @@ std::vector<double> FieldSweep::packed_errors(std::span<const long> points,
                                               const std::vector<double>& units) const {
   constexpr double kTolerance = 0.1 * kFineFlow;  // not that of the flows that made the extremals
   std::vector<SmallVector> p0;
-  for (const long i : points) p0.push_back(points_.p0(i));
+  for (const long i : points) p0.push_back(points_.p0(points_.best(i)));
   const std::vector<PackedEnd> ends = packed_ends(problem_, p0, std::vector(p0.size(), kTolerance));
   std::vector<double> errors(points.size(), kUnreached);
   for (std::size_t k = 0; k < points.size(); ++k) {
-    if (ends[k].reached) errors[k] = error_of(points[k], ends[k].q1, units);
+    if (ends[k].reached) errors[k] = error_of(points_.best(points[k]), ends[k].q1, units);
   }
   return errors;
 }
@@ -279,15 +280,16 @@ std::vector<double> FieldSweep::verify(std::span<const long> points,
     std::vector<std::size_t> tried;
     for (std::size_t k = 0; k < points.size(); ++k) {
       if (!beyond(k)) continue;
-      FieldPoint point = points_.point(points[k]);
+      const FieldPoint point = points_.point(points_.best(points[k]));
       attempts.push_back({target(points[k], point.windings), point.inverse, point});
       tried.push_back(k);
     }
     newton_.polish(attempts);
     std::vector<long> mended;
     for (std::size_t a = 0; a < tried.size(); ++a) {
-      if (attempts[a].found) points_.replace(points[tried[a]], attempts[a].point);
-      mended.push_back(points[tried[a]]);
+      const long i = points[tried[a]];
+      if (attempts[a].found) points_.replace(points_.best(i), attempts[a].point);
+      mended.push_back(i);
     }
     const std::vector<double> left = packed_errors(mended, units);
     for (std::size_t a = 0; a < tried.size(); ++a) errors[tried[a]] = left[a];
@@ -300,18 +302,19 @@ std::vector<double> FieldSweep::verify(std::span<const long> points,
 
 double FieldSweep::verify_by_steps(long i, const std::vector<double>& units, double allowed) {
   constexpr int kMostSteps = 16;  // times those of the sweep
+  const FieldSlot slot = points_.best(i);
   const auto error_by = [&](int factor) {
-    const std::vector<double> end = newton_.end(points_.p0(i), 2 * factor);
+    const std::vector<double> end = newton_.end(points_.p0(slot), 2 * factor);
     return end.empty() ? kUnreached
-                       : error_of(i, Eigen::Map<const Eigen::VectorXd>(end.data(), n_), units);
+                       : error_of(slot, Eigen::Map<const Eigen::VectorXd>(end.data(), n_), units);
   };
   double error = error_by(1);
   long unused = 0;
   for (int factor = 2; factor <= kMostSteps && !(error <= allowed); factor *= 2) {
-    FieldPoint point = points_.point(i);
+    FieldPoint point = points_.point(slot);
     if (!newton_.solve(target(i, point.windings), point, unused, factor)) continue;
-    if (point.sign != points_.sign(i)) break;
-    points_.replace(i, point);
+    if (point.sign != points_.sign(slot)) break;
+    points_.replace(slot, point);
     error = error_by(factor);
   }
   return error;

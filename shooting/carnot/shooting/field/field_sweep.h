@@ -1,15 +1,15 @@
 // The least actions from one start to all points of a grid, spread from neighbour to neighbour.
 //
-// A point keeps one extremal: p(0), the action A, p(T), the inverse of J = dq(T)/dp(0), and
-// S = (dp(T)/dp(0)) J^-1. The latter is the second derivative of the action by its target, p(T)
-// being the first. So for a neighbour at dq it says
+// A point keeps one extremal, or a few: p(0), the action A, p(T), the inverse of J = dq(T)/dp(0),
+// and S = (dp(T)/dp(0)) J^-1 of each. The latter is the second derivative of the action by its
+// target, p(T) being the first. So for a neighbour at dq it says
 //
 //   p(0) + J^-1 dq     and     A + p(T).dq + dq'S dq / 2.
 //
-// Where that is less than the neighbour has, Newton's method on the end point makes an extremal of
-// it (field_wave.h). Points tell their neighbours in the order of their actions, as in Dijkstra's
-// algorithm, so that most are reached by their least way first; but many at once, and until nothing
-// changes, since the model is not exact.
+// Where that is less than the neighbour has, or it has room for one more, Newton's method on the
+// end point makes an extremal of it (field_wave.h). Points tell their neighbours in the order of
+// their actions, as in Dijkstra's algorithm, so that most are reached by their least way first; but
+// many at once, and until nothing changes, since the model is not exact.
 //
 // The grid is cut into slabs across its first axis, which do not depend on the number of threads.
 // In each sweep all slabs, one on each thread, tell within themselves what has up to a level of
@@ -41,16 +41,17 @@ class FieldSweep {
  public:
   static constexpr int kMostSweeps = 200;
 
-  // Of a scene without drift or potential, whose action is H T. Keeps references.
-  FieldSweep(const BoundaryValueProblem& problem, const FieldGrid& grid);
+  // Of a scene without drift or potential, whose action is H T, with so many extremals for each
+  // point. Keeps references.
+  FieldSweep(const BoundaryValueProblem& problem, const FieldGrid& grid, int branches);
 
   [[nodiscard]] const FieldStore& points() const { return points_; }
   [[nodiscard]] const FieldCounts& counts() const { return counts_; }
   [[nodiscard]] std::vector<double> target(long i, const std::vector<int>& windings) const {
     return grid_.target(i, windings);
   }
-  // Takes an extremal to point i that was found otherwise, where it is better. False where it
-  // does not lead there, or is no better.
+  // Takes an extremal to point i that was found otherwise, where it is wanted. False where it does
+  // not lead there, or is not.
   bool seed(long i, const std::vector<double>& p0, const std::vector<int>& windings, int origin) {
     return seed(i, p0, windings, origin, counts_.flows);
   }
@@ -67,9 +68,9 @@ class FieldSweep {
   long reflect(int threads);
   // Points that neighbours promised less than they have, in vain, or which have nothing.
   [[nodiscard]] std::vector<long> doubtful() const;
-  // max |q(T) - target| in these units, of points that are known, by flows with less tolerance, or
-  // twice as many steps, than those that made them; infinite where that fails. Where it is not
-  // `allowed` the extremal is made again. Safe for different points at once.
+  // max |q(T) - target| in these units, of the least action of points that are known, by flows with
+  // less tolerance, or twice as many steps, than those that made them; infinite where that fails.
+  // Where it is not `allowed` the extremal is made again. Safe for different points at once.
   std::vector<double> verify(std::span<const long> points,
                              const std::vector<double>& units,
                              double allowed);
@@ -85,12 +86,12 @@ class FieldSweep {
     long sweeps = 0;   // so far
     double level = 0;  // of the action up to which neighbours are told
   };
-  // A point that has news. It is out of date where the point has less, or has told it, since.
+  // A slot that has news. It is out of date where the slot has less, or has told it, since.
   struct News {
     double action = 0;
-    long point = -1;
+    FieldSlot slot{-1};
     bool operator>(const News& other) const {
-      return action != other.action ? action > other.action : point > other.point;
+      return action != other.action ? action > other.action : slot > other.slot;
     }
   };
   // The least action first.
@@ -102,8 +103,8 @@ class FieldSweep {
             long& flows);
   // Takes the image of point `from` in a mirror to where it is, as seed() would.
   bool reflect(long from, const std::vector<double>& mirror, long& flows);
-  // Of an end of point i.
-  [[nodiscard]] double error_of(long i,
+  // Of an end of an extremal.
+  [[nodiscard]] double error_of(FieldSlot slot,
                                 const SmallVector& end,
                                 const std::vector<double>& units) const;
   // By flows of packs.
@@ -115,18 +116,25 @@ class FieldSweep {
   // Layers below a border between slabs. The last one is the last of all, which is below the first
   // one where the axis goes around.
   [[nodiscard]] std::vector<long> borders() const;
-  // Fills the queues with all points that have news for their slab.
+  // Calls visit(slot) for all slots of a layer.
+  template <class Visit>
+  void for_layer(long layer, const Visit& visit) const {
+    for (long i = layer * layer_; i < (layer + 1) * layer_; ++i) {
+      for (int b = 0; b < points_.branches(); ++b) visit(points_.slot(i, b));
+    }
+  }
+  // Fills the queues with all slots that have news for their slab.
   void gather();
   // The least action of what is still to be told, infinite where there is nothing.
   [[nodiscard]] double least_news();
-  // Tells the neighbours of point i within a slab what it promises them.
-  void push_all(long i, long slab, FieldWave& wave);
+  // Tells the neighbours within a slab what an extremal promises them.
+  void push_all(FieldSlot slot, long slab, FieldWave& wave);
   // Tells all within a slab up to the level. It ends early where `goes_on` says so, which is asked
   // before every wave.
   void sweep_slab(long slab, const std::function<bool()>& goes_on, FieldCounts& counts);
   // Tells points across the border above a layer, up and down.
   void cross(long layer, FieldCounts& counts);
-  void queue(long i);
+  void queue(FieldSlot slot);
 
   const BoundaryValueProblem& problem_;
   const FieldGrid& grid_;

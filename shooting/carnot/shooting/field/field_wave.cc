@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace carnot::internal {
@@ -58,16 +59,21 @@ void FieldWave::add(Push push) {
 
 bool FieldWave::tempts(const Push& push) const {
   constexpr double kSameWay = 0.1;  // of the largest momentum
-  if (!points_.known(push.to)) return true;
-  if (!points_.is_more(push.to, push.promise - push.slack)) return false;
-  // What differs then is the error of the model, not the way.
-  const SmallVector there = points_.p0(push.to);
-  const SmallVector apart = push.from.p0 + push.from.inverse * push.dq - there;
-  const bool near = apart.cwiseAbs().maxCoeff() < kSameWay * there.cwiseAbs().maxCoeff();
-  return !near || push.windings != points_.windings(push.to);
+  if (!points_.wants(push.to, push.promise - push.slack)) return false;
+  const SmallVector p0 = push.from.p0 + push.from.inverse * push.dq;
+  for (int b = 0; b < points_.branches(); ++b) {
+    const FieldSlot slot = points_.slot(push.to, b);
+    if (!points_.is_filled(slot)) break;
+    // What differs then is the error of the model, not the way.
+    const SmallVector there = points_.p0(slot);
+    const double apart = (p0 - there).cwiseAbs().maxCoeff();
+    const bool near = apart < kSameWay * there.cwiseAbs().maxCoeff();
+    if (near && push.windings == points_.windings(slot)) return false;
+  }
+  return true;
 }
 
-std::vector<long> FieldWave::run() {
+std::vector<FieldSlot> FieldWave::run() {
   less_.clear();
   while (!wave_.empty()) {
     reach();
@@ -136,9 +142,9 @@ void FieldWave::follow(std::vector<Way>& ways) {
   }
   for (Way& way : ways) {
     const Push& push = *way.push;
-    const bool is_less = push.promise < (1 - kDoubt) * points_.action(push.to);
     if (way.fate == Way::Fate::kThere) take(push, std::move(way.point));
-    if (way.fate == Way::Fate::kNowhere && is_less) points_.doubt(push.to);
+    if (way.fate != Way::Fate::kNowhere || !points_.known(push.to)) continue;
+    if (push.promise < (1 - kDoubt) * points_.action(push.to)) points_.doubt(push.to);
   }
 }
 
@@ -162,12 +168,12 @@ void FieldWave::go_on(Way& way, const FieldAttempt& attempt) const {
 }
 
 void FieldWave::take(const Push& push, FieldPoint point) {
-  if (!points_.is_more(push.to, point.action)) return;
-  ++counts_.improved;
   point.windings = push.windings;
   point.origin = push.from.origin;
-  points_.put(push.to, point);
-  less_.push_back(push.to);
+  const std::optional<FieldSlot> slot = points_.put(push.to, point);
+  if (!slot) return;
+  ++counts_.improved;
+  less_.push_back(*slot);
 }
 
 }  // namespace carnot::internal

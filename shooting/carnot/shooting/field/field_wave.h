@@ -40,9 +40,9 @@ class FieldWave {
   // Whether it is better run before more is pushed.
   [[nodiscard]] bool full() const { return wave_.size() >= kFull; }
   [[nodiscard]] bool empty() const { return wave_.empty(); }
-  // Reaches all that waits. Returns the points that have less now, in the order in which they were
-  // reached.
-  std::vector<long> run();
+  // Reaches all that waits. Returns the slots that have news of it, in the order in which they were
+  // filled.
+  std::vector<FieldSlot> run();
 
  private:
   // So that packs are full to the end, when most of a wave is reached. A field of 69,696 vehicles
@@ -92,7 +92,7 @@ class FieldWave {
   FieldNewton newton_;
   std::vector<Push> wave_;   // to different points
   std::vector<Push> after_;  // to points that are on the wave
-  std::vector<long> less_;
+  std::vector<FieldSlot> less_;
 };
 
 }  // namespace carnot::internal
