@@ -14,6 +14,7 @@
 #include "atlas/atlas_record.h"
 #include "atlas/atlas_summary.h"
 #include "atlas/crew.h"
+#include "atlas/field_crew.h"
 #include "atlas/field_report.h"
 #include "atlas/field_state.h"
 #include "atlas/journal.h"
@@ -25,6 +26,7 @@
 #include "run/delivery.h"
 #include "run/search_options.h"
 #include "run/subcommands.h"
+#include "text/interrupt.h"
 #include "text/numbers.h"
 #include "text/output_file.h"
 #include "text/progress_bar.h"
@@ -48,8 +50,8 @@ are searched: thousands a second on each core. It keeps the geodesic of least ac
 in OUTPUT.journal.state, from which --resume goes on. Three figures tell how far it can be trusted:
 promises of less by a neighbour that were not kept, triangles between neighbours that are violated, and
 points that had less when --check of them were searched again. A FILE.field has distances alone, for planners: DistanceField in C++ reads it.
-In a build with CARNOT_MPI=ON the same call works on many ranks, under mpirun or srun; a field is
-solved by one of them. docs/clusters.md says how, and what to expect.
+In a build with CARNOT_MPI=ON the same call works on many ranks, under mpirun or srun.
+docs/clusters.md says how, and what to expect.
 
 Examples
   carnot atlas vehicle --problems poses.csv --output parked.csv
@@ -87,8 +89,7 @@ class Atlas {
 
   int work() {
     Ranks ranks;  // nothing of the call is refused any more
-    if (!call_.field) return work_on_list(ranks);
-    return ranks.leads() ? work_on_field() : kSuccess;
+    return call_.field ? work_on_field(ranks) : work_on_list(ranks);
   }
 
  private:
@@ -118,57 +119,76 @@ class Atlas {
     return deliver_with_plot(result);
   }
 
-  int work_on_field() {
-    std::vector<FieldAxis> axes;
-    for (const Axis& axis : list_->axes()) axes.push_back({axis.coordinate, axis.values});
-    const BoundaryValueProblem asked = problem_between(run_.dynamics, problem(0).ends);
-    FieldOptions options = field_;
-    options.search = options_;
-    options.threads = run_.threads;
+  int work_on_field(Ranks& ranks) {
     const std::string path = call_.output + ".journal";
     const bool goes_on = call_.resume && std::filesystem::exists(path);
-    Journal journal(path, journal_call(call_, run_, *list_), call_.resume);
+    if (!ranks.leads()) {
+      if (ranks.agree(0) == 0) return kSuccess;
+      FieldState state(path);
+      const auto interrupts = [](double) { return !interrupted(); };
+      return solve_field(ranks, state, interrupts).finished ? kSuccess : kInterrupted;
+    }
+    const auto journal = open_journal(ranks);
     FieldState state(path);
     if (!goes_on) state.remove();
     Field field;
     try {
       ProgressBar bar("points", static_cast<double>(list_->size()), run_.destination.quiet);
-      options.progress = bar.callback();
-      field = state.solve(asked, axes, options);
+      field = solve_field(ranks, state, bar.callback());
     } catch (...) {
-      if (!state.exists()) journal.remove();
+      if (!state.exists()) journal->remove();
       throw;
     }
     if (!field.finished) {
       if (state.exists()) {
         complain("the field is not done: the same call with --resume goes on");
       } else {
-        journal.remove();
+        journal->remove();
       }
       return kInterrupted;
     }
-    const auto records = [&](const auto& visit) {
-      for (long i = 0; i < list_->size(); ++i) visit(field_record(i, problem(i), field));
-    };
-    AtlasSummary summary;
-    if (has_ending(call_.output, kDistances)) {
-      records([&](const Json& record) { note(record, summary); });
-      NewFile file(call_.output);
-      DistanceField(asked, axes, options_.mod_angles, field).write(file.temporary());
-      file.finish();
-    } else {
-      summary = write(records);
-    }
+    const AtlasSummary summary = write(field);
     state.remove();
-    journal.remove();
+    journal->remove();
     Result result;
-    result.json = summary_json(summary, field.resumed, journal.repaired() + state.repaired());
+    result.json = summary_json(summary, field.resumed, journal->repaired() + state.repaired());
     result.json["field"] = field_json(field);
     result.json["elapsed_seconds"] = field.elapsed_seconds;
     result.text = [&] {
       return atlas_text(result.json) + field_text(field) + "written: " + call_.output + '\n';
     };
     return deliver_with_plot(result);
+  }
+
+  [[nodiscard]] BoundaryValueProblem field_problem() const {
+    return problem_between(run_.dynamics, problem(0).ends);
+  }
+  [[nodiscard]] std::vector<FieldAxis> field_axes() const {
+    std::vector<FieldAxis> axes;
+    for (const Axis& axis : list_->axes()) axes.push_back({axis.coordinate, axis.values});
+    return axes;
+  }
+
+  Field solve_field(Ranks& ranks, FieldState& state, const Progress& progress) const {
+    FieldOptions options = field_;
+    options.search = options_;
+    options.threads = run_.threads;
+    options.progress = progress;
+    return solve_together(ranks, state, field_problem(), field_axes(), std::move(options));
+  }
+
+  AtlasSummary write(const Field& field) const {
+    const auto records = [&](const auto& visit) {
+      for (long i = 0; i < list_->size(); ++i) visit(field_record(i, problem(i), field));
+    };
+    if (!has_ending(call_.output, kDistances)) return write(records);
+    AtlasSummary summary;
+    records([&](const Json& record) { note(record, summary); });
+    NewFile file(call_.output);
+    DistanceField(field_problem(), field_axes(), options_.mod_angles, field)
+        .write(file.temporary());
+    file.finish();
+    return summary;
   }
 
   int deliver_with_plot(Result& result) const {

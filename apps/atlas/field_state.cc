@@ -25,16 +25,14 @@ Field FieldState::solve(const BoundaryValueProblem& problem,
                         FieldOptions options) {
   options.keep = [this](const auto& write) { keep(write); };
   std::ifstream earlier(path_, std::ios::binary);
-  if (earlier.is_open()) {
-    options.state = &earlier;
-    try {
-      return solve_field(problem, axes, options);
-    } catch (const DamagedState&) {
-      ++repaired_;
-      options.state = nullptr;
-    }
+  if (earlier.is_open()) options.state = &earlier;
+  try {
+    return solve_field(problem, axes, options);
+  } catch (const DamagedState&) {
+    ++repaired_;
+    options.state = nullptr;
+    return solve_field(problem, axes, options);
   }
-  return solve_field(problem, axes, options);
 }
 
 void FieldState::keep(const std::function<void(std::ostream&)>& write) {

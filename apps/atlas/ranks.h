@@ -5,12 +5,16 @@
 // text of a record; nobody waits for anybody else. When a rank dies, MPI ends all of them, and the
 // journal holds what had reached rank 0.
 //
+// A field is made by all of them in step: each tells all others what it has done (exchange).
+//
 // A build without MPI, and a call that nothing launched, has rank 0 alone.
 #pragma once
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace carnot::apps {
 
@@ -31,13 +35,18 @@ class Ranks {
   Ranks& operator=(const Ranks&) = delete;
 
   [[nodiscard]] int size() const;
-  // Whether this is rank 0.
-  [[nodiscard]] bool leads() const;
+  [[nodiscard]] int rank() const;
+  [[nodiscard]] bool leads() const { return rank() == 0; }
   // How many threads of its own a rank has where nothing is said: the cores of a machine are shared
   // by its ranks.
   [[nodiscard]] int threads() const;
   // What rank 0 says, for all of them. Each must ask.
   [[nodiscard]] long agree(long of_rank_0);
+  // What each of them says, in their order. Each must ask, from one thread.
+  [[nodiscard]] std::vector<std::string> exchange(const std::string& own);
+  // Ends all of them with exit status 1, where this is not the only one: the others wait for what
+  // this one cannot do any more.
+  void abandon();
 
   // Rank 0, from one thread: serves the others until all have left. What the desk throws is thrown
   // then.

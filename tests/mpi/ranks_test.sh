@@ -79,4 +79,48 @@ resume=()
 [ ! -e ended.jsonl.journal ] || resume=(--resume)
 [ -e ended.jsonl ] || ranks 2 ended.jsonl --threads 2 "${resume[@]}" >ended.txt
 cmp one.jsonl ended.jsonl
+
+# Fields, which all ranks make together.
+field=(unicycle --from 0,0,0 --grid 'x=-2:2:33, y=-2:2:33, theta=-pi:pi:24' --mod-angles --field
+  --check 10 --quiet)
+field() { "$program" atlas "${field[@]}" --output "$@"; }
+# field_ranks NUMBER OUTPUT OPTION...
+field_ranks() { mpirun --oversubscribe -n "$1" "$program" atlas "${field[@]}" --output "${@:2}"; }
+
+field field1.jsonl --threads 1 >field1.txt
+for n in 1 2 3; do
+  field_ranks "$n" "field_ranks$n.jsonl" --threads 1 >"field_ranks$n.txt"
+  cmp field1.jsonl "field_ranks$n.jsonl"
+  [ "$(grep -c '^problems' "field_ranks$n.txt")" = 1 ] || fail "$n ranks tell more than one field"
+done
+for bad in '--branches 0' '--resume --set beta=-1'; do
+  # shellcheck disable=SC2086
+  if field_ranks 3 bad.jsonl $bad >bad.txt 2>&1; then fail "not refused: $bad"; fi
+  [ "$(grep -c '^carnot:' bad.txt)" = 1 ] || fail "refused more than once: $bad: $(cat bad.txt)"
+done
+
+# field_resume NUMBER OUTPUT: goes on with what is left of it, if anything.
+field_resume() {
+  local resume=()
+  [ ! -e "$2.journal" ] || resume=(--resume)
+  field_ranks "$1" "$2" --threads 1 "${resume[@]}"
+}
+for ((i = 0; i < kills; ++i)); do
+  field_resume 2 field_killed.jsonl >killed.txt 2>&1 &
+  launcher=$!
+  sleep "$((RANDOM % 2)).$((RANDOM % 8 + 1))"
+  mapfile -t processes < <(pgrep -P "$launcher" || true)
+  if [ ${#processes[@]} -gt 0 ]; then
+    kill -KILL "${processes[RANDOM % ${#processes[@]}]}" 2>/dev/null || true
+  fi
+  status=0
+  wait "$launcher" || status=$?
+  released field_killed.jsonl.journal
+  if [ "$status" = 0 ]; then
+    cmp field1.jsonl field_killed.jsonl
+    rm field_killed.jsonl
+  fi
+done
+field_resume 3 field_killed.jsonl >killed.txt
+cmp field1.jsonl field_killed.jsonl
 echo 'the same bytes'

@@ -15,7 +15,9 @@ namespace {
 struct AcrossTheAxis : testing::Test {
   const BoundaryValueProblem problem = test::heisenberg_group({0.25, 0, 0.5});
   const FieldGrid grid{{0, 0, 0.5}, {{0, {0.25, 0.15, 0.05, -0.05, -0.15, -0.25}, false, 0}}};
-  FieldSweep sweep{problem, grid, 1};
+  const FieldTeam nobody;
+  FieldPartners alone{nobody};
+  FieldSweep sweep{problem, grid, 1, alone};
 
   void SetUp() override {
     const GeodesicReport report = find_geodesics(problem);
@@ -44,10 +46,12 @@ TEST(FieldSweep, MakesExtremalsAgainThatAreNotExact) {
   const BoundaryValueProblem problem = test::sideways();
   const FieldGrid grid{problem.to, {{1, {1.0}, false, 0}}};
   const GeodesicReport report = find_geodesics(problem);
+  const FieldTeam nobody;
   for (const bool packs : {true, false}) {
     BoundaryValueProblem own = problem;
     own.dynamics.kernel.fills_packs = packs;
-    FieldSweep sweep(own, grid, 1);
+    FieldPartners alone(nobody);
+    FieldSweep sweep(own, grid, 1, alone);
     ASSERT_TRUE(sweep.seed(0, report.geodesics.at(0).p0, {0}, 0));
     const std::vector<long> points{0};
     const std::vector<double> units(4, 1.0);
@@ -111,8 +115,10 @@ TEST(FieldSweep, KeepsAsManyWaysAsThereAreBranches) {
   };
   const std::vector<int> left{0, 0};
   const std::vector<int> right{0, -1};
+  const FieldTeam nobody;
   for (const int branches : {1, 2}) {
-    FieldSweep sweep(problem, grid, branches);
+    FieldPartners alone(nobody);
+    FieldSweep sweep(problem, grid, branches, alone);
     ASSERT_TRUE(sweep.seed(0, search(0, left).p0, left, 0));
     ASSERT_TRUE(sweep.seed(4, search(4, right).p0, right, 1));
     ASSERT_EQ(sweep.spread(1, {}), Spread::kSettled);

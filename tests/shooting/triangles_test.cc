@@ -40,8 +40,10 @@ struct TrianglesTest : testing::Test {
     return points;
   }
   [[nodiscard]] Triangles check(const std::vector<long>& points) const {
+    const FieldTeam nobody;
+    FieldPartners alone(nobody);
     return check_triangles(
-        problem, grid, [this](long i) { return field.action[i]; }, points, search, 3, 2);
+        problem, grid, [this](long i) { return field.action[i]; }, points, search, 3, 2, alone);
   }
 };
 

@@ -7,6 +7,7 @@
 #include <istream>
 #include <ostream>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "carnot/shooting/find_geodesics.h"
@@ -27,6 +28,18 @@ struct FieldAxis {
   std::vector<double> values;
 };
 
+// Processes that work on one field together, say on several machines. Each of them calls
+// solve_field() with the same arguments, and has the same field in the end, which is the one that a
+// process alone makes. Their processors should be of one kind: those of several kinds round
+// differently, and may come to different decisions.
+struct FieldTeam {
+  int rank = 0;  // of this process, counted from 0
+  int size = 1;
+  // What each of them gives, in the order of ranks. It is called by all, each from one thread, and
+  // returns when all have called it.
+  std::function<std::vector<std::string>(const std::string& own)> exchange;
+};
+
 struct FieldOptions {
   GeodesicOptions search;  // of the searches; `mod_angles` and `tolerance` are of the whole
   int threads = 0;         // 0: all cores
@@ -37,13 +50,15 @@ struct FieldOptions {
   // Points that are searched once more in the end, with another seed, and from which a neighbour is
   // searched for the triangle inequality.
   long check = 100;
-  Progress progress;  // fraction of points known; returns false to stop
+  Progress progress;  // fraction of points known; returns false to stop, of a team all of it
   // To go on after an end that was not foreseen: called between sweeps and searches with a function
-  // that writes the state of the work, some 300 bytes a point, for the same machine and version.
+  // that writes the state of the work, some 300 bytes a point, for the same machine and version. Of
+  // a team only rank 0 keeps it, and goes on from it.
   std::function<void(const std::function<void(std::ostream&)>& write)> keep;
   // What it has written in a call with the same arguments. The field becomes the same as if that
   // call had gone on.
   std::istream* state = nullptr;
+  FieldTeam team;
 };
 
 // Of all points, the first axis slowest. What is not known of a point is NaN.

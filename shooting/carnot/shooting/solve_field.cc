@@ -92,6 +92,10 @@ Field solve_field(const BoundaryValueProblem& problem,
           "the target of a field has " + std::to_string(problem.to.size()) +
               " components, the scene has " + std::to_string(problem.dynamics.dof));
   require(options.branches >= 1, "a field keeps at least one extremal for each point");
+  const FieldTeam& team = options.team;
+  require(team.size >= 1 && team.rank >= 0 && team.rank < team.size &&
+              (team.size == 1 || team.exchange != nullptr),
+          "a team has ranks below its size, and an exchange");
   validate(problem, axes);
   const FieldGrid grid = grid_of(problem, axes, options.search.mod_angles);
   const BoundaryValueProblem regular = to_a_regular_point(problem, grid);

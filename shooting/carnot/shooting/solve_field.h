@@ -14,8 +14,9 @@ namespace carnot {
 
 // `problem.to` gives the coordinates without an axis. For scenes with velocity constraints or
 // driftless controls, and without a potential. Throws std::invalid_argument for other scenes, free
-// ends, limits, no branches, and axes that are empty or not equidistant, and DamagedState. Memory:
-// some 200 bytes a branch of a point with three coordinates, 300 with four, and the answer.
+// ends, limits, no branches, a team without an exchange, and axes that are empty or not
+// equidistant, and DamagedState. Memory: some 200 bytes a branch of a point with three coordinates,
+// 300 with four, and the answer.
 Field solve_field(const BoundaryValueProblem& problem,
                   const std::vector<FieldAxis>& axes,
                   const FieldOptions& options = {});

@@ -15,7 +15,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 bool FieldSolver::answer(Field& field) {
   verify(field);
-  if (stopped_) return false;
+  if (partners_.stopped()) return false;
   const long size = grid_.size();
   std::vector<long> poor;
   for (long i = 0; i < size; ++i) {
@@ -23,7 +23,7 @@ bool FieldSolver::answer(Field& field) {
     if (!(field.error[i] <= allowed_error()) && !settled) poor.push_back(i);
   }
   searches_.keep(search(poor, options_.search.seed));
-  if (stopped_) return false;
+  if (partners_.stopped()) return false;
   course_.searches += static_cast<long>(poor.size());
   for (long i = 0; i < size; ++i) settle(i, field);
   return true;
@@ -39,26 +39,40 @@ void FieldSolver::verify(Field& field) {
   field.verification.assign(size, Verification::kSingle);
   field.label.assign(size, Label::kUnknown);
   field.reason.assign(size, Reason::kNone);
+  verify_parts(field.error);
+  for (long i = 0; i < size; ++i) {
+    if (!sweep_.points().known(i)) continue;
+    const FieldPoint point = sweep_.points().point(sweep_.points().best(i));
+    field.action[i] = point.action * scales_.action;
+    field.label[i] = labels_[point.origin];
+    for (int j = 0; j < n; ++j) field.p0[i * n + j] = point.p0[j] * scales_.momentum(j);
+  }
+}
+
+void FieldSolver::verify_parts(std::vector<double>& errors) {
   const double allowed = allowed_error();
   const int threads = thread_count(options_.threads);
+  const long size = grid_.size();
   constexpr long kBlock = 256;
   const long blocks = (size + kBlock - 1) / kBlock;
+  sweep_.forget_changes();  // made by all partners alike
   parallel_for(static_cast<int>(blocks), threads, [&](int block) {
-    if (!go_on()) return;
+    if (!partners_.has(block) || !go_on()) return;
     std::vector<long> points;
     for (long i = block * kBlock; i < std::min(size, (block + 1) * kBlock); ++i) {
       if (sweep_.points().known(i)) points.push_back(i);
     }
-    const std::vector<double> errors = sweep_.verify(points, scales_.q, allowed);
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      const long i = points[k];
-      field.error[i] = errors[k];
-      const FieldPoint point = sweep_.points().point(sweep_.points().best(i));
-      field.action[i] = point.action * scales_.action;
-      field.label[i] = labels_[point.origin];
-      for (int j = 0; j < n; ++j) field.p0[i * n + j] = point.p0[j] * scales_.momentum(j);
-    }
+    const std::vector<double> found = sweep_.verify(points, scales_.q, allowed);
+    for (std::size_t k = 0; k < points.size(); ++k) errors[points[k]] = found[k];
   });
+  sweep_.share();
+  partners_.share([&errors](ByteWriter& out) { out.add(errors); },
+                  [&errors](ByteReader& in) {
+                    const auto theirs = in.take_all<double>(errors.size());
+                    for (std::size_t i = 0; i < theirs.size(); ++i) {
+                      if (!std::isnan(theirs[i])) errors[i] = theirs[i];
+                    }
+                  });
 }
 
 void FieldSolver::settle(long i, Field& field) const {

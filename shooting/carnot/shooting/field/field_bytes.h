@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <istream>
 #include <ostream>
+#include <span>
 #include <stdexcept>
 #include <string_view>
 #include <type_traits>
@@ -30,6 +31,11 @@ class ByteWriter {
   void add(const std::vector<T>& values) {
     add(static_cast<std::uint64_t>(values.size()));
     add(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+  }
+  // Without their number.
+  template <Bytes T>
+  void add_all(std::span<const T> values) {
+    add(reinterpret_cast<const char*>(values.data()), values.size_bytes());
   }
   // Adds the checksum of all.
   void finish() { add(checksum_.value()); }
@@ -70,6 +76,11 @@ class ByteReader {
     std::vector<T> values(size);
     take(reinterpret_cast<char*>(values.data()), size * sizeof(T));
     return values;
+  }
+  // As many as there are.
+  template <Bytes T>
+  void take_into(std::span<T> values) {
+    take(reinterpret_cast<char*>(values.data()), values.size_bytes());
   }
   // What was written last is the checksum.
   void finish() {

@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "carnot/shooting/field/field_bytes.h"
 #include "carnot/shooting/field/field_grid.h"
+#include "carnot/shooting/field/field_partners.h"
 #include "carnot/shooting/find_geodesics.h"
 
 namespace carnot::internal {
@@ -20,18 +22,26 @@ struct FieldFind {
   std::vector<double> p0;
 };
 
+// What a search gave.
+struct FieldReport {
+  Reason reason = Reason::kNone;  // why nothing was found
+  std::optional<FieldFind> found;
+  std::vector<int> windings;  // of the axes of the grid
+};
+
 class FieldSearches {
  public:
-  using Reports = std::map<long, GeodesicReport>;  // of points
+  using Reports = std::map<long, FieldReport>;  // of points
 
   // Keeps references.
   FieldSearches(const BoundaryValueProblem& problem, const FieldGrid& grid)
       : problem_(problem), grid_(grid) {}
 
-  // Searches these points on so many threads. It keeps nothing.
+  // Searches these points on so many threads, with the partners. It keeps nothing.
   [[nodiscard]] Reports search(const std::vector<long>& points,
                                const GeodesicOptions& options,
-                               int threads) const;
+                               int threads,
+                               FieldPartners& partners) const;
   // The least of what was found for each point, and why nothing was.
   void keep(const Reports& reports);
 
@@ -49,6 +59,8 @@ class FieldSearches {
   void read(ByteReader& in);
 
  private:
+  [[nodiscard]] FieldReport report_of(const GeodesicReport& report) const;
+
   const BoundaryValueProblem& problem_;
   const FieldGrid& grid_;
   std::map<long, FieldFind> found_;

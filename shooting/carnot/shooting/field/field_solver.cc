@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <random>
 #include <set>
+#include <sstream>
+#include <string>
 
 #include "carnot/numerics/parallel.h"
 #include "carnot/shooting/field/field_bytes.h"
@@ -46,16 +49,17 @@ FieldSolver::FieldSolver(const BoundaryValueProblem& problem,
     : own_(problem),
       options_(options),
       own_grid_(grid),
+      partners_(options.team),
       scales_(scales_of(problem, grid)),
       scaled_(rescaled(own_, scales_)),
       grid_(in_scales(grid, scales_)),
-      sweep_(scaled_, grid_, options.branches),
+      sweep_(scaled_, grid_, options.branches, partners_),
       searches_(own_, own_grid_) {}
 
 Field FieldSolver::run() {
   const auto began = std::chrono::steady_clock::now();
   try {
-    if (options_.state != nullptr) read(*options_.state);
+    read_state();
   } catch (const DamagedBytes& damaged) {
     throw DamagedState(damaged.what());
   }
@@ -176,7 +180,7 @@ bool FieldSolver::check() {
   }
   const std::uint64_t seed = options_.search.seed + 1 + static_cast<std::uint64_t>(course_.round);
   const auto found = check({sample.begin(), sample.end()}, seed);
-  if (stopped_) return false;
+  if (partners_.stopped()) return false;
   if (course_.lower + course_.violations == 0 || ++course_.round == kRounds) {
     course_.phase = Phase::kDone;
   } else if (take(found)) {
@@ -197,15 +201,16 @@ FieldSearches::Reports FieldSolver::check(const std::vector<long>& sample, std::
       sample,
       searching(seed),
       seed,
-      options_.threads);
-  if (stopped_) return found;
+      options_.threads,
+      partners_);
+  if (partners_.stopped()) return found;
   course_.triangles = triangles.tried;
   course_.violations = static_cast<long>(triangles.beyond.size());
   course_.checked = static_cast<long>(sample.size());
   course_.lower = 0;
   for (const auto& [i, report] : found) {
-    if (report.geodesics.empty()) continue;
-    if (report.geodesics[0].action < (1 - kLower) * verified_action_of(i)) ++course_.lower;
+    if (!report.found) continue;
+    if (report.found->action < (1 - kLower) * verified_action_of(i)) ++course_.lower;
   }
   found.merge(search(triangles.beyond, seed));
   return found;
@@ -222,15 +227,15 @@ bool FieldSolver::spread() {
   do {
     const Spread spread = sweep_.spread(threads, progress, [this] { keep(); });
     course_.settled = spread == Spread::kSettled;
-    if (spread == Spread::kStopped || stopped_) return false;
+    if (spread == Spread::kStopped || partners_.stopped()) return false;
   } while (course_.settled && sweep_.reflect(threads) > 0);
   course_.spreading = false;
   return true;
 }
 
 bool FieldSolver::go_on() {
-  if (!stopped_ && options_.progress && !options_.progress(known_)) stopped_ = true;
-  return !stopped_;
+  if (!partners_.stops() && options_.progress && !options_.progress(known_)) partners_.stop();
+  return !partners_.stops();
 }
 
 GeodesicOptions FieldSolver::searching(std::uint64_t seed) {
@@ -241,21 +246,20 @@ GeodesicOptions FieldSolver::searching(std::uint64_t seed) {
 }
 
 FieldSearches::Reports FieldSolver::search(const std::vector<long>& points, std::uint64_t seed) {
-  return searches_.search(points, searching(seed), options_.threads);
+  return searches_.search(points, searching(seed), options_.threads, partners_);
 }
 
 std::optional<FieldSolver::Searched> FieldSolver::improve(const std::vector<long>& points) {
   constexpr double kLess = 1e-6;  // relative; the model of a neighbour is not better than that
   const auto found = search(points, options_.search.seed);
-  if (stopped_) return std::nullopt;
+  if (partners_.stopped()) return std::nullopt;
   course_.searches += static_cast<long>(points.size());
   Searched searched;
   for (const auto& [i, report] : found) {
     const double action = action_of(i);
     if (!std::isfinite(action)) continue;
     ++searched.known;
-    const bool has_less =
-        !report.geodesics.empty() && report.geodesics[0].action < (1 - kLess) * action;
+    const bool has_less = report.found && report.found->action < (1 - kLess) * action;
     searched.less += has_less ? 1 : 0;
   }
   course_.spreading = take(found);
@@ -266,16 +270,11 @@ bool FieldSolver::take(const FieldSearches::Reports& reports) {
   searches_.keep(reports);
   bool better = false;
   for (const auto& [i, report] : reports) {
-    if (report.geodesics.empty()) continue;
-    const Geodesic& geodesic = report.geodesics[0];
-    std::vector<double> p0 = geodesic.p0;
+    if (!report.found) continue;
+    std::vector<double> p0 = report.found->p0;
     for (int j = 0; j < scaled_.dynamics.dof; ++j) p0[j] /= scales_.momentum(j);
-    std::vector<int> windings;
-    for (const FieldGrid::Axis& axis : grid_.axes) {
-      windings.push_back(geodesic.windings.empty() ? 0 : geodesic.windings[axis.coordinate]);
-    }
-    labels_.push_back(geodesic.label);
-    better |= sweep_.seed(i, p0, windings, static_cast<int>(labels_.size()) - 1);
+    labels_.push_back(report.found->label);
+    better |= sweep_.seed(i, p0, report.windings, static_cast<int>(labels_.size()) - 1);
   }
   return better;
 }
@@ -299,7 +298,35 @@ double FieldSolver::allowed_error() const {
 }
 
 void FieldSolver::keep() const {
-  if (options_.keep) options_.keep([this](std::ostream& out) { write(out); });
+  if (options_.keep && partners_.leads()) options_.keep([this](std::ostream& out) { write(out); });
+}
+
+void FieldSolver::read_state() {
+  std::istream* const state = options_.state;
+  if (partners_.alone()) {
+    if (state != nullptr) read(*state);
+    return;
+  }
+  constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
+  using Letters = std::istreambuf_iterator<char>;
+  bool exists = partners_.leads() && state != nullptr;
+  std::vector<char> bytes;
+  if (exists) bytes.assign(Letters(*state), Letters());
+  partners_.share(
+      [&](ByteWriter& out) {
+        out.add(exists);
+        out.add(bytes);
+      },
+      [&](ByteReader& in) {
+        const auto has_it = in.take<bool>();
+        const auto theirs = in.take_all<char>(kAny);
+        if (!has_it) return;
+        exists = true;
+        bytes = theirs;
+      });
+  if (!exists) return;
+  std::istringstream in(std::string(bytes.begin(), bytes.end()));
+  read(in);
 }
 
 std::vector<double> FieldSolver::identity() const {

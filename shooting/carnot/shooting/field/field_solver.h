@@ -3,8 +3,9 @@
 //
 // Seeds are searched and spread. Then come points that neighbours promised less in vain or that
 // nothing is known of, then those that are much farther than a neighbour, then a random sample;
-// what these searches improve is spread, too. Between any two of these steps, and between sweeps,
-// the state can be written, and the work be gone on with from there.
+// what these searches improve is spread, too. All partners do all of this, but for searches, slabs
+// and points to verify, of which each does its part. Between any two of these steps, and between
+// sweeps, the state can be written, and the work be gone on with from there.
 #pragma once
 
 #include <atomic>
@@ -17,6 +18,7 @@
 
 #include "carnot/shooting/field.h"
 #include "carnot/shooting/field/field_grid.h"
+#include "carnot/shooting/field/field_partners.h"
 #include "carnot/shooting/field/field_searches.h"
 #include "carnot/shooting/field/field_sweep.h"
 #include "carnot/shooting/problem/natural_scales.h"
@@ -71,6 +73,7 @@ class FieldSolver {
   bool check();
   // From neighbour to neighbour and across the mirrors of the scene.
   bool spread();
+  // Whether this process need not stop. Only what the partners agree on ends the work.
   bool go_on();
 
   [[nodiscard]] GeodesicOptions searching(std::uint64_t seed);
@@ -96,10 +99,14 @@ class FieldSolver {
   // Fills what is asked of all points: verifies them, and searches those that do not pass.
   bool answer(Field& field);
   void verify(Field& field);
+  // The errors at the ends of all points that are known, of which each of the partners tells some.
+  void verify_parts(std::vector<double>& errors);
   // What a search says of point i, where that is better; at the start, the path that does not move.
   void settle(long i, Field& field) const;
 
   void keep() const;
+  // Reads what is to be gone on from, if anything; the partners that of rank 0.
+  void read_state();
   // What a state must be of.
   [[nodiscard]] std::vector<double> identity() const;
   void write(std::ostream& out) const;
@@ -108,6 +115,7 @@ class FieldSolver {
   const BoundaryValueProblem& own_;
   const FieldOptions& options_;
   const FieldGrid& own_grid_;
+  FieldPartners partners_;
   NaturalScales scales_;
   BoundaryValueProblem scaled_;
   FieldGrid grid_;
@@ -116,7 +124,6 @@ class FieldSolver {
   std::vector<Label> labels_;  // of seeds
   Course course_;
   std::atomic<double> known_{0};
-  std::atomic<bool> stopped_{false};
 };
 
 }  // namespace carnot::internal

@@ -1,6 +1,7 @@
 #include "carnot/shooting/field/field_store.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 namespace carnot::internal {
@@ -105,7 +106,7 @@ std::vector<int> FieldStore::windings(FieldSlot slot) const {
 
 void FieldStore::replace(FieldSlot slot, const FieldPoint& point) {
   State& state = states_[at(slot)];
-  state.known = true;
+  state.known = state.changed = true;
   state.sign = point.sign;
   state.origin = point.origin;
   state.action = point.action;
@@ -139,6 +140,39 @@ void FieldStore::read(ByteReader& in) {
   take(numbers_);
   take(windings_);
   take(doubted_);
+}
+
+void FieldStore::write_changes(ByteWriter& out) {
+  constexpr long kEnd = -1;
+  for (long k = 0; k < static_cast<long>(states_.size()); ++k) {
+    State& state = states_[k];
+    if (!state.changed) continue;
+    state.changed = false;
+    out.add(k);
+    out.add(state);
+    out.add(doubted_[k / branches_]);
+    out.add_all<double>({&numbers_[k * width_], width_});
+    out.add_all<std::int16_t>({&windings_[k * axes_], axes_});
+  }
+  out.add(kEnd);
+}
+
+void FieldStore::forget_changes() {
+  for (State& state : states_) state.changed = false;
+}
+
+std::vector<FieldSlot> FieldStore::read_changes(ByteReader& in) {
+  std::vector<FieldSlot> slots;
+  for (auto k = in.take<long>(); k >= 0; k = in.take<long>()) {
+    if (k >= static_cast<long>(states_.size())) ByteReader::fail();
+    states_[k] = in.take<State>();
+    states_[k].changed = false;
+    doubted_[k / branches_] = in.take<std::uint8_t>();
+    in.take_into(std::span(&numbers_[k * width_], width_));
+    in.take_into(std::span(&windings_[k * axes_], axes_));
+    slots.push_back(FieldSlot{k});
+  }
+  return slots;
 }
 
 }  // namespace carnot::internal

@@ -51,7 +51,10 @@ class FieldStore {
   // Whether a neighbour has promised less since it had its least action, and Newton's method
   // failed.
   [[nodiscard]] bool doubted(long i) const { return doubted_[i] != 0; }
-  void doubt(long i) { doubted_[i] = 1; }
+  void doubt(long i) {
+    doubted_[i] = 1;
+    states_[at(slot(i, 0))].changed = true;
+  }
   // Keeps an extremal where it is wanted: in the slot of the same one, if it has less there, or
   // else in a free one or that of the most action. That is news for its neighbours. Returns the
   // slot.
@@ -74,9 +77,16 @@ class FieldStore {
   }
   // There is none any more.
   void told(FieldSlot slot, Whom whom) {
-    std::uint8_t& news = states_[at(slot)].news;
-    news = static_cast<std::uint8_t>(news & ~whom);
+    State& state = states_[at(slot)];
+    state.news = static_cast<std::uint8_t>(state.news & ~whom);
+    state.changed = true;
   }
+
+  // What has changed in slots that are filled, since the last call of this or of the next one.
+  void write_changes(ByteWriter& out);
+  void forget_changes();
+  // What another store of the same sizes has written so. Returns the slots. Throws DamagedBytes.
+  std::vector<FieldSlot> read_changes(ByteReader& in);
 
   void write(ByteWriter& out) const;
   // What a store of the same sizes has written. Throws DamagedBytes.
@@ -89,6 +99,7 @@ class FieldStore {
     std::uint8_t news = 0;  // a bit for each that has not been told of the last improvement
     std::int8_t sign = 0;
     bool known = false;
+    bool changed = false;  // and not written since
   };
 
   static long at(FieldSlot slot) { return static_cast<long>(slot); }

@@ -17,14 +17,19 @@ constexpr long kMostSlabs = 16;
 
 }  // namespace
 
-FieldSweep::FieldSweep(const BoundaryValueProblem& problem, const FieldGrid& grid, int branches)
+FieldSweep::FieldSweep(const BoundaryValueProblem& problem,
+                       const FieldGrid& grid,
+                       int branches,
+                       FieldPartners& partners)
     : problem_(problem),
       grid_(grid),
+      partners_(partners),
       newton_(problem),
       n_(problem.dynamics.dof),
       layers_(static_cast<long>(grid.axes.front().values.size())),
       slabs_(std::clamp(layers_ / 2, 1L, kMostSlabs)),
-      points_(grid.size(), n_, grid.axes.size(), branches) {
+      points_(grid.size(), n_, grid.axes.size(), branches),
+      queues_(slabs_) {
   layer_ = grid.size() / layers_;
 }
 
@@ -47,11 +52,16 @@ std::vector<long> FieldSweep::borders() const {
   return layers;
 }
 
-void FieldSweep::queue(FieldSlot slot) {
+long FieldSweep::slab_of(FieldSlot slot) const {
   const long layer = points_.point_of(slot) / layer_;
   long slab = layer * slabs_ / layers_;
   while (begin_of(slab + 1) <= layer) ++slab;
-  queues_[slab].push({points_.action(slot), slot});
+  return slab;
+}
+
+void FieldSweep::queue(FieldSlot slot) {
+  const long slab = slab_of(slot);
+  if (partners_.has(slab)) queues_[slab].push({points_.action(slot), slot});
 }
 
 void FieldSweep::gather() {
@@ -79,7 +89,18 @@ double FieldSweep::least_news() {
       });
     }
   }
+  partners_.share([&least](ByteWriter& out) { out.add(least); },
+                  [&least](ByteReader& in) { least = std::min(least, in.take<double>()); });
   return least;
+}
+
+void FieldSweep::share() {
+  partners_.share([this](ByteWriter& out) { points_.write_changes(out); },
+                  [this](ByteReader& in) {
+                    for (const FieldSlot slot : points_.read_changes(in)) {
+                      if (points_.has_news(slot, FieldStore::kSlab)) queue(slot);
+                    }
+                  });
 }
 
 void FieldSweep::push_all(FieldSlot slot, long slab, FieldWave& wave) {
@@ -150,31 +171,24 @@ Spread FieldSweep::spread(int threads,
     return static_cast<double>(count) / static_cast<double>(points_.size());
   };
   double part = is_spreading() ? known() : 0;
-  const auto goes_on = [&] { return !progress || progress(part); };
-  const std::vector<long> crossed = borders();
+  const auto goes_on = [&] {
+    if (progress && !progress(part)) partners_.stop();
+    return !partners_.stops();
+  };
+  points_.forget_changes();  // made by all partners alike
   gather();
   while (course_.sweeps < most_sweeps) {
-    if (!goes_on()) return Spread::kStopped;
+    (void)goes_on();
     const double least = least_news();
+    if (partners_.stopped()) return Spread::kStopped;
     if (!std::isfinite(least)) {
       course_ = {};
       return Spread::kSettled;
     }
     if (least > course_.level) course_.level = kRise * least;
-    std::vector<FieldCounts> counts(slabs_);
-    parallel_for(static_cast<int>(slabs_), threads, [&](int slab) {
-      sweep_slab(slab, goes_on, counts[slab]);
-    });
-    if (!goes_on()) return Spread::kStopped;  // within a slab
-    // Every second border, then the others; around, the last and the first.
-    const int inner = static_cast<int>(crossed.size()) - 1;
-    for (const int parity : {0, 1}) {
-      parallel_for(std::max(inner, 0), threads, [&](int border) {
-        if (border % 2 == parity) cross(crossed[border], counts[border]);
-      });
-    }
-    if (inner >= 0) cross(crossed[inner], counts[inner]);
-    for (const FieldCounts& counted : counts) counts_ += counted;
+    const FieldCounts counted = sweep(threads, goes_on);
+    if (partners_.stopped()) return Spread::kStopped;  // within a slab
+    counts_ += counted;
     ++course_.sweeps;
     counts_.sweeps = std::max(counts_.sweeps, course_.sweeps);
     part = known();
@@ -182,6 +196,34 @@ Spread FieldSweep::spread(int threads,
   }
   course_ = {};
   return Spread::kTired;
+}
+
+FieldCounts FieldSweep::sweep(int threads, const std::function<bool()>& goes_on) {
+  std::vector<FieldCounts> counts(slabs_);
+  parallel_for(static_cast<int>(slabs_), threads, [&](int slab) {
+    if (partners_.has(slab)) sweep_slab(slab, goes_on, counts[slab]);
+  });
+  share();
+  if (partners_.stopped()) return {};
+  const std::vector<long> crossed = borders();
+  const int inner = std::max(0, static_cast<int>(crossed.size()) - 1);
+  const auto cross_own = [&](int border) {
+    if (partners_.has(border)) cross(crossed[border], counts[border]);
+  };
+  // Every second border, then the others; around, the last and the first.
+  for (const int parity : {0, 1}) {
+    parallel_for(inner, threads, [&](int border) {
+      if (border % 2 == parity) cross_own(border);
+    });
+    share();
+  }
+  if (!crossed.empty()) cross_own(inner);
+  FieldCounts all;
+  for (const FieldCounts& counted : counts) all += counted;
+  share();
+  partners_.share([&all](ByteWriter& out) { out.add(all); },
+                  [&all](ByteReader& in) { all += in.take<FieldCounts>(); });
+  return all;
 }
 
 void FieldSweep::write(ByteWriter& out) const {

@@ -11,10 +11,11 @@
 // their actions, as in Dijkstra's algorithm, so that most are reached by their least way first; but
 // many at once, and until nothing changes, since the model is not exact.
 //
-// The grid is cut into slabs across its first axis, which do not depend on the number of threads.
-// In each sweep all slabs, one on each thread, tell within themselves what has up to a level of
-// action, then across borders: every second one, then the others. So the result does not depend on
-// the number of threads either. The level rises when nothing below it is left.
+// The grid is cut into slabs across its first axis, which do not depend on the number of threads or
+// processes. In each sweep all slabs, one on each thread, tell within themselves what has up to a
+// level of action, then across borders: every second one, then the others. So the result does not
+// depend on who does it either. The level rises when nothing below it is left. A slab is always
+// swept by the same process, and the others are given what has changed after each of these steps.
 #pragma once
 
 #include <functional>
@@ -25,6 +26,7 @@
 #include "carnot/shooting/boundary_value_problem.h"
 #include "carnot/shooting/field/field_grid.h"
 #include "carnot/shooting/field/field_newton.h"
+#include "carnot/shooting/field/field_partners.h"
 #include "carnot/shooting/field/field_store.h"
 #include "carnot/shooting/field/field_wave.h"
 
@@ -43,7 +45,10 @@ class FieldSweep {
 
   // Of a scene without drift or potential, whose action is H T, with so many extremals for each
   // point. Keeps references.
-  FieldSweep(const BoundaryValueProblem& problem, const FieldGrid& grid, int branches);
+  FieldSweep(const BoundaryValueProblem& problem,
+             const FieldGrid& grid,
+             int branches,
+             FieldPartners& partners);
 
   [[nodiscard]] const FieldStore& points() const { return points_; }
   [[nodiscard]] const FieldCounts& counts() const { return counts_; }
@@ -56,7 +61,8 @@ class FieldSweep {
     return seed(i, p0, windings, origin, counts_.flows);
   }
   // Sweeps until nothing changes, at most so often. `progress` is told by all threads, the fraction
-  // that was known after the last sweep. `between` is called between sweeps.
+  // that was known after the last sweep; where it returns false, the partners stop. `between` is
+  // called between sweeps.
   Spread spread(int threads,
                 const Progress& progress,
                 const std::function<void()>& between = {},
@@ -74,6 +80,10 @@ class FieldSweep {
   std::vector<double> verify(std::span<const long> points,
                              const std::vector<double>& units,
                              double allowed);
+  // What has changed so far is known to the partners: all have done the same.
+  void forget_changes() { points_.forget_changes(); }
+  // Gives the partners what has changed here since then, and takes what has there.
+  void share();
 
   // All that is known, between two sweeps or two spreads.
   void write(ByteWriter& out) const;
@@ -123,10 +133,14 @@ class FieldSweep {
       for (int b = 0; b < points_.branches(); ++b) visit(points_.slot(i, b));
     }
   }
-  // Fills the queues with all slots that have news for their slab.
+  [[nodiscard]] long slab_of(FieldSlot slot) const;
+  // Fills the queues of own slabs with all slots that have news for their slab.
   void gather();
-  // The least action of what is still to be told, infinite where there is nothing.
+  // The least action of what is still to be told, by any of the partners; infinite where there is
+  // nothing.
   [[nodiscard]] double least_news();
+  // Once, all slabs and all borders. Returns what all partners did; nothing where they stop.
+  FieldCounts sweep(int threads, const std::function<bool()>& goes_on);
   // Tells the neighbours within a slab what an extremal promises them.
   void push_all(FieldSlot slot, long slab, FieldWave& wave);
   // Tells all within a slab up to the level. It ends early where `goes_on` says so, which is asked
@@ -134,10 +148,12 @@ class FieldSweep {
   void sweep_slab(long slab, const std::function<bool()>& goes_on, FieldCounts& counts);
   // Tells points across the border above a layer, up and down.
   void cross(long layer, FieldCounts& counts);
+  // Where its slab is an own one.
   void queue(FieldSlot slot);
 
   const BoundaryValueProblem& problem_;
   const FieldGrid& grid_;
+  FieldPartners& partners_;
   FieldNewton newton_;
   int n_;
   long layer_;  // points of a layer across the first axis
@@ -146,7 +162,7 @@ class FieldSweep {
   FieldStore points_;
   FieldCounts counts_;
   Course course_;
-  std::vector<Queue> queues_;  // of slabs, in a spread
+  std::vector<Queue> queues_;  // of slabs
 };
 
 }  // namespace carnot::internal

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "carnot/shooting/field/field_grid.h"
+#include "carnot/shooting/field/field_partners.h"
 #include "carnot/shooting/find_geodesics.h"
 
 namespace carnot::internal {
@@ -26,14 +27,15 @@ struct Triangles {
 
 // A cold search from each of `points` to a neighbour that is drawn with `seed`. `problem`, `grid`
 // and `action` are in the units of the scene; an action that is not finite is not known, and its
-// pair is left out. Cost: a search for each point, on so many threads. Where `search.progress`
-// stops the searches, the rest is left out.
+// pair is left out. Cost: a search for each point, on so many threads of each of the partners.
+// Where `search.progress` stops the searches, the rest is left out.
 Triangles check_triangles(const BoundaryValueProblem& problem,
                           const FieldGrid& grid,
                           const std::function<double(long)>& action,
                           const std::vector<long>& points,
                           const GeodesicOptions& search,
                           std::uint64_t seed,
-                          int threads);
+                          int threads,
+                          FieldPartners& partners);
 
 }  // namespace carnot::internal
