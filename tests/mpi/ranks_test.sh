@@ -81,7 +81,7 @@ resume=()
 cmp one.jsonl ended.jsonl
 
 # Fields, which all ranks make together.
-field=(unicycle --from 0,0,0 --grid 'x=-2:2:33, y=-2:2:33, theta=-pi:pi:24' --mod-angles --field
+field=(unicycle --from 0,0,0 --grid 'x=-2:2:49, y=-2:2:49, theta=-pi:pi:36' --mod-angles --field
   --check 10 --quiet)
 field() { "$program" atlas "${field[@]}" --output "$@"; }
 # field_ranks NUMBER OUTPUT OPTION...
@@ -123,4 +123,22 @@ for ((i = 0; i < kills; ++i)); do
 done
 field_resume 3 field_killed.jsonl >killed.txt
 cmp field1.jsonl field_killed.jsonl
+
+# SIGTERM stops all of them together.
+field_resume 2 field_ended.jsonl >ended.txt 2>&1 &
+launcher=$!
+sleep 1
+kill -TERM "$(pgrep -P "$launcher" -x mpirun || echo "$launcher")"
+wait "$launcher" || true
+released field_ended.jsonl.journal
+[ -e field_ended.jsonl ] || field_resume 2 field_ended.jsonl >ended.txt
+cmp field1.jsonl field_ended.jsonl
+
+# A rank that cannot go on says so once, and ends all of them: here a folder is in the way.
+mkdir -p field_full.jsonl.journal.state.part/there
+if field_resume 2 field_full.jsonl >full.txt 2>&1; then fail 'a state that is not kept is no failure'; fi
+[ "$(grep -c '^carnot: cannot write' full.txt)" = 1 ] || fail "told more than once: $(cat full.txt)"
+rm -r field_full.jsonl.journal.state.part
+field_resume 2 field_full.jsonl >full.txt
+cmp field1.jsonl field_full.jsonl
 echo 'the same bytes'

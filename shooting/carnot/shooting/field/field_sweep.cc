@@ -208,7 +208,7 @@ FieldCounts FieldSweep::sweep(int threads, const std::function<bool()>& goes_on)
   const std::vector<long> crossed = borders();
   const int inner = std::max(0, static_cast<int>(crossed.size()) - 1);
   const auto cross_own = [&](int border) {
-    if (partners_.has(border)) cross(crossed[border], counts[border]);
+    if (partners_.has(border / 2)) cross(crossed[border], counts[border]);
   };
   // Every second border, then the others; around, the last and the first.
   for (const int parity : {0, 1}) {
