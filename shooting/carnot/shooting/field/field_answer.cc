@@ -75,8 +75,14 @@ void FieldSolver::verify_parts(std::vector<double>& errors) {
                   });
 }
 
+bool FieldSolver::is_less(const FieldFind& found, double action) {
+  constexpr double kLower = 1e-12;  // relative
+  double force = 0;
+  for (const double p : found.p0) force += std::abs(p);
+  return found.action + force * found.error < (1 - kLower) * action;
+}
+
 void FieldSolver::settle(long i, Field& field) const {
-  constexpr double kLower = 1e-12;
   const int n = field.dof;
   if (searches_.rests(i)) {
     field.action[i] = field.error[i] = 0;
@@ -86,7 +92,7 @@ void FieldSolver::settle(long i, Field& field) const {
   }
   const bool good = field.error[i] <= allowed_error();
   const FieldFind* found = searches_.find(i);
-  if (found != nullptr && (!good || found->action < (1 - kLower) * field.action[i])) {
+  if (found != nullptr && (!good || is_less(*found, field.action[i]))) {
     field.action[i] = found->action;
     std::copy(found->p0.begin(), found->p0.end(), field.p0.begin() + i * n);
     field.verification[i] = found->verification;
