@@ -7,9 +7,7 @@
 namespace carnot::internal {
 namespace {
 
-std::size_t numbers_of_a_slot(int n) {
-  return static_cast<std::size_t>(2 * n + n * n + n * (n + 1) / 2);
-}
+std::size_t numbers_of_a_slot(std::size_t n) { return 2 * n + n * n + n * (n + 1) / 2; }
 
 }  // namespace
 
@@ -17,7 +15,7 @@ FieldStore::FieldStore(long points, int n, std::size_t axes, int branches)
     : n_(n),
       axes_(axes),
       branches_(branches),
-      width_(numbers_of_a_slot(n)),
+      width_(numbers_of_a_slot(static_cast<std::size_t>(n))),
       states_(points * branches),
       numbers_(points * branches * width_),
       windings_(points * branches * axes),
