@@ -6,6 +6,7 @@
 
 #include "carnot/numerics/parallel.h"
 #include "carnot/shooting/front/ray_ends.h"
+#include "carnot/shooting/linear/norm.h"
 #include "carnot/shooting/rays/conjugate_time.h"
 
 namespace carnot::internal {

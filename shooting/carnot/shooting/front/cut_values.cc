@@ -7,6 +7,7 @@
 
 #include "carnot/numerics/parallel.h"
 #include "carnot/shooting/cut_time.h"
+#include "carnot/shooting/linear/norm.h"
 #include "carnot/shooting/rays/conjugate_time.h"
 
 namespace carnot::internal {
@@ -15,16 +16,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNear = 0.5;       // of |p|: another partner is meant
 constexpr double kSameTime = 1e-9;  // relative: both are the same but for round-off
-
-double apart(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (std::size_t j = 0; j < a.size(); ++j) sum += (a[j] - b[j]) * (a[j] - b[j]);
-  return std::sqrt(sum);
-}
-
-double size_of(const std::vector<double>& p) {
-  return apart(p, std::vector<double>(p.size(), 0.0));
-}
 
 bool same_kind(const Rival& a, const Rival& b) {
   return a.offset == b.offset && a.signs == b.signs;
@@ -127,11 +118,11 @@ bool CutValues::follow(const Way& from, const Way& to, int halvings, Rival& riva
   constexpr double kItself = 1e-6;  // of |p|: the ray is a rival of its own, which is not meant
   constexpr double kSooner = 0.5;   // of the time: what is carried to before that is far away
   const Ray ray(dynamics_, from_, to.p);
-  const double size = size_of(from.p);
+  const double size = norm(from.p);
   const auto leads = [&](const Rival& guess) {
     Rival next = guess;
     if (!polish_meeting(ray, ray.enough_steps(guess.t), next) || !(next.t > 0) ||
-        apart(next.p, guess.p) > kNear * size || apart(next.p, to.p) <= kItself * size) {
+        distance(next.p, guess.p) > kNear * size || distance(next.p, to.p) <= kItself * size) {
       return false;
     }
     rival = std::move(next);
@@ -140,7 +131,7 @@ bool CutValues::follow(const Way& from, const Way& to, int halvings, Rival& riva
   if (leads(moved(from, to, rival))) return true;
   const Ray before(dynamics_, from_, from.p);
   const auto first = carried(before, rival, to.p, before.enough_steps(rival.t));
-  if (first && apart(first->p, rival.p) <= kNear * size && first->t > kSooner * rival.t &&
+  if (first && distance(first->p, rival.p) <= kNear * size && first->t > kSooner * rival.t &&
       leads(*first)) {
     return true;
   }
@@ -203,10 +194,10 @@ CutValue CutValues::led_to(const std::vector<double>& p,
     beside_none = beside_none || std::isinf(its.t);
     if (!has_partner(its)) continue;
     if (its.conjugate < kBefore * its.t && turned(*neighbour.p, its.partner.p) < kNeighbours) {
-      near_edge = apart(its.partner.p, *neighbour.p);
+      near_edge = distance(its.partner.p, *neighbour.p);
     }
     const bool same = value.known && same_kind(value.partner, its.partner) &&
-                      apart(value.partner.p, its.partner.p) < kSamePartner * size_of(p);
+                      distance(value.partner.p, its.partner.p) < kSamePartner * norm(p);
     if (same) continue;
     const Led led = lead(own, neighbour, kHalvings, AtEdge::kLeft, value);
     later = later || led == Led::kLater;
@@ -364,7 +355,7 @@ bool CutValues::improve(int i, const std::vector<int>& neighbours, CutValue& val
     const bool same =
         !value.at_conjugate && std::isfinite(value.t) && !neighbour.at_conjugate &&
         same_kind(value.partner, neighbour.partner) &&
-        apart(value.partner.p, neighbour.partner.p) < kSamePartner * size_of(momenta_[i]);
+        distance(value.partner.p, neighbour.partner.p) < kSamePartner * norm(momenta_[i]);
     if (same || !has_partner(neighbour)) continue;
     const Led led = lead(own, this->neighbour(j), 1, AtEdge::kLeft, value);
     better = better || led == Led::kEarlier;

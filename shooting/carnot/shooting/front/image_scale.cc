@@ -30,10 +30,4 @@ std::vector<double> ImageScale::image(const double* q) const {
   return image;
 }
 
-double distance(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (std::size_t j = 0; j < a.size(); ++j) sum += (a[j] - b[j]) * (a[j] - b[j]);
-  return std::sqrt(sum);
-}
-
 }  // namespace carnot::internal

@@ -22,7 +22,4 @@ class ImageScale {
   std::vector<double> sizes_;
 };
 
-// In these units.
-double distance(const std::vector<double>& a, const std::vector<double>& b);
-
 }  // namespace carnot::internal

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "carnot/shooting/front/image_scale.h"
+#include "carnot/shooting/linear/norm.h"
 
 namespace carnot::internal {
 namespace {
