@@ -49,7 +49,8 @@ With --field the points of a grid are reached from their neighbours by Newton's 
 are searched: thousands a second on each core. It keeps the geodesic of least action; its state is kept
 in OUTPUT.journal.state, from which --resume goes on. Three figures tell how far it can be trusted:
 promises of less by a neighbour that were not kept, triangles between neighbours that are violated, and
-points that had less when --check of them were searched again. A FILE.field has distances alone, for planners: DistanceField in C++ reads it.
+points that had less when --check of them were searched again. A FILE.field has distances alone, for
+planners: DistanceField in C++ reads it.
 In a build with CARNOT_MPI=ON the same call works on many ranks, under mpirun or srun.
 docs/clusters.md says how, and what to expect.
 
@@ -121,13 +122,13 @@ class Atlas {
 
   int work_on_field(Ranks& ranks) {
     const std::string path = call_.output + ".journal";
-    const bool goes_on = call_.resume && std::filesystem::exists(path);
     if (!ranks.leads()) {
       if (ranks.agree(0) == 0) return kSuccess;
       FieldState state(path);
       const auto interrupts = [](double) { return !interrupted(); };
       return solve_field(ranks, state, interrupts).finished ? kSuccess : kInterrupted;
     }
+    const bool goes_on = call_.resume && std::filesystem::exists(path);
     const auto journal = open_journal(ranks);
     FieldState state(path);
     if (!goes_on) state.remove();

@@ -6,7 +6,7 @@ program=$1
 rm -rf "$2"
 mkdir -p "$2"
 cd "$2"
-kills=${3:-8}
+kills=${3:-15}  # of the list, and as many of the field
 
 # mpirun refuses to start programs of root, whom containers have.
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
