@@ -9,16 +9,13 @@
 #include <vector>
 
 #include "carnot/shooting/solve_field.h"
+#include "shooting/field_axis.h"
 #include "shooting/problems.h"
 
 namespace carnot::field_state_test {
 namespace {
 
-FieldAxis axis(int coordinate, double first, double step, int count) {
-  FieldAxis axis{coordinate, {}};
-  for (int i = 0; i < count; ++i) axis.values.push_back(first + i * step);
-  return axis;
-}
+using test::axis;
 
 // Vehicles are promised less in vain, and some are beyond jumps: each part of the work is done.
 Field vehicles(const FieldOptions& options) {

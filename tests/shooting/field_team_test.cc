@@ -12,10 +12,13 @@
 #include <vector>
 
 #include "carnot/shooting/solve_field.h"
+#include "shooting/field_axis.h"
 #include "shooting/problems.h"
 
 namespace carnot::field_team_test {
 namespace {
+
+using test::axis;
 
 // Where the members of a team hand in what they say, and wait for the others.
 class Table {
@@ -49,12 +52,6 @@ class Table {
   int present_ = 0;
   long rounds_ = 0;
 };
-
-FieldAxis axis(int coordinate, double first, double step, int count) {
-  FieldAxis axis{coordinate, {}};
-  for (int i = 0; i < count; ++i) axis.values.push_back(first + i * step);
-  return axis;
-}
 
 FieldOptions quick() {
   FieldOptions options;

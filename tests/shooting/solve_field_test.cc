@@ -7,18 +7,15 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "shooting/field_axis.h"
 #include "shooting/problems.h"
 
 namespace carnot::solve_field_test {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using test::axis;
 
-FieldAxis axis(int coordinate, double first, double step, int count) {
-  FieldAxis axis{coordinate, {}};
-  for (int i = 0; i < count; ++i) axis.values.push_back(first + i * step);
-  return axis;
-}
+constexpr double kPi = std::numbers::pi;
 
 // Of the unicycle, modulo whole turns.
 Field unicycles(int threads, int branches = 1) {
