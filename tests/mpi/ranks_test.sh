@@ -43,30 +43,42 @@ if ranks 2 taken.jsonl >taken.txt 2>&1; then fail 'an old journal is not refused
 # Waits until no process holds the journal any more: mpirun ends before its ranks.
 released() { [ ! -e "$1" ] || flock --timeout 20 "$1" true; }
 
+# resume RANKS_FUNCTION NUMBER OUTPUT: goes on with what is left of it, if anything.
+resume() {
+  local option=()
+  [ ! -e "$3.journal" ] || option=(--resume)
+  "$1" "$2" "$3" --threads 1 "${option[@]}"
+}
+
+# kill_often RANKS_FUNCTION WHOLE OUTPUT SECONDS: two ranks, of which one or their launcher is killed
+# within about so many seconds, again and again; in the end the output is that of an undisturbed run.
 # A rank that is killed ends all of them; what had been done stays.
+kill_often() {
+  local launcher status children processes i
+  for ((i = 0; i < kills; ++i)); do
+    resume "$1" 2 "$3" >killed.txt 2>&1 &
+    launcher=$!
+    sleep "$((RANDOM % $4)).$((RANDOM % 8 + 1))"
+    children=$(pgrep -d, -P "$launcher" || true)
+    mapfile -t processes < <([ -z "$children" ] || pgrep -P "$children" || true)
+    processes+=(${children//,/ })
+    if [ ${#processes[@]} -gt 0 ]; then
+      kill -KILL "${processes[RANDOM % ${#processes[@]}]}" 2>/dev/null || true
+    fi
+    status=0
+    wait "$launcher" || status=$?
+    released "$3.journal"
+    if [ "$status" = 0 ]; then
+      cmp "$2" "$3"
+      rm "$3"
+    fi
+  done
+  resume "$1" 3 "$3" >killed.txt
+  cmp "$2" "$3"
+}
+
 RANDOM=1
-for ((i = 0; i < kills; ++i)); do
-  resume=()
-  [ ! -e killed.jsonl.journal ] || resume=(--resume)
-  ranks 2 killed.jsonl --threads 1 "${resume[@]}" >killed.txt 2>&1 &
-  launcher=$!
-  sleep "0.$((RANDOM % 8 + 1))"
-  mapfile -t processes < <(pgrep -P "$launcher" || true)
-  if [ ${#processes[@]} -gt 0 ]; then
-    kill -KILL "${processes[RANDOM % ${#processes[@]}]}" 2>/dev/null || true
-  fi
-  status=0
-  wait "$launcher" || status=$?
-  released killed.jsonl.journal
-  if [ "$status" = 0 ]; then
-    cmp one.jsonl killed.jsonl
-    rm killed.jsonl
-  fi
-done
-resume=()
-[ ! -e killed.jsonl.journal ] || resume=(--resume)
-ranks 3 killed.jsonl --threads 1 "${resume[@]}" >killed.txt
-cmp one.jsonl killed.jsonl
+kill_often ranks one.jsonl killed.jsonl 1
 
 # SIGTERM, as of a cluster whose time is up: the journal stays, or all was done.
 ranks 2 ended.jsonl --threads 1 >ended.txt 2>&1 &
@@ -75,9 +87,7 @@ sleep 0.6
 kill -TERM "$launcher"
 wait "$launcher" || true
 released ended.jsonl.journal
-resume=()
-[ ! -e ended.jsonl.journal ] || resume=(--resume)
-[ -e ended.jsonl ] || ranks 2 ended.jsonl --threads 2 "${resume[@]}" >ended.txt
+[ -e ended.jsonl ] || resume ranks 2 ended.jsonl >ended.txt
 cmp one.jsonl ended.jsonl
 
 # Fields, which all ranks make together.
@@ -99,46 +109,23 @@ for bad in '--branches 0' '--resume --set beta=-1'; do
   [ "$(grep -c '^carnot:' bad.txt)" = 1 ] || fail "refused more than once: $bad: $(cat bad.txt)"
 done
 
-# field_resume NUMBER OUTPUT: goes on with what is left of it, if anything.
-field_resume() {
-  local resume=()
-  [ ! -e "$2.journal" ] || resume=(--resume)
-  field_ranks "$1" "$2" --threads 1 "${resume[@]}"
-}
-for ((i = 0; i < kills; ++i)); do
-  field_resume 2 field_killed.jsonl >killed.txt 2>&1 &
-  launcher=$!
-  sleep "$((RANDOM % 2)).$((RANDOM % 8 + 1))"
-  mapfile -t processes < <(pgrep -P "$launcher" || true)
-  if [ ${#processes[@]} -gt 0 ]; then
-    kill -KILL "${processes[RANDOM % ${#processes[@]}]}" 2>/dev/null || true
-  fi
-  status=0
-  wait "$launcher" || status=$?
-  released field_killed.jsonl.journal
-  if [ "$status" = 0 ]; then
-    cmp field1.jsonl field_killed.jsonl
-    rm field_killed.jsonl
-  fi
-done
-field_resume 3 field_killed.jsonl >killed.txt
-cmp field1.jsonl field_killed.jsonl
+kill_often field_ranks field1.jsonl field_killed.jsonl 2
 
 # SIGTERM stops all of them together.
-field_resume 2 field_ended.jsonl >ended.txt 2>&1 &
+resume field_ranks 2 field_ended.jsonl >ended.txt 2>&1 &
 launcher=$!
 sleep 1
 kill -TERM "$(pgrep -P "$launcher" -x mpirun || echo "$launcher")"
 wait "$launcher" || true
 released field_ended.jsonl.journal
-[ -e field_ended.jsonl ] || field_resume 2 field_ended.jsonl >ended.txt
+[ -e field_ended.jsonl ] || resume field_ranks 2 field_ended.jsonl >ended.txt
 cmp field1.jsonl field_ended.jsonl
 
 # A rank that cannot go on says so once, and ends all of them: here a folder is in the way.
 mkdir -p field_full.jsonl.journal.state.part/there
-if field_resume 2 field_full.jsonl >full.txt 2>&1; then fail 'a state that is not kept is no failure'; fi
+if resume field_ranks 2 field_full.jsonl >full.txt 2>&1; then fail 'a state that is not kept is no failure'; fi
 [ "$(grep -c '^carnot: cannot write' full.txt)" = 1 ] || fail "told more than once: $(cat full.txt)"
 rm -r field_full.jsonl.journal.state.part
-field_resume 2 field_full.jsonl >full.txt
+resume field_ranks 2 field_full.jsonl >full.txt
 cmp field1.jsonl field_full.jsonl
 echo 'the same bytes'
