@@ -63,7 +63,9 @@ TEST_F(FigureFile, ShowsLimits) {
     const std::string svg = contents(file("a.svg"));
     EXPECT_EQ(svg.find(region) != std::string::npos, figure != Figure::kTime);
     EXPECT_EQ(svg.find(band) != std::string::npos, figure != Figure::kPath);
-    if (figure == Figure::kPath) EXPECT_NE(svg.find("at a limit"), std::string::npos);
+    if (figure == Figure::kPath) {
+      EXPECT_NE(svg.find("at a limit"), std::string::npos);
+    }
   }
   draw_silently(file("a.gif"), scene, {curve});
   curve.on_limits.clear();

@@ -78,7 +78,8 @@ TEST(Columns, AreAddedBesideAnAbnormalCurveOnly) {
   const auto is_added = [](const Column& column) { return column.added; };
   EXPECT_GE(std::count_if(columns.begin(), columns.end(), is_added), 8);
   for (const Column& column : columns) {
-    if (column.added) EXPECT_LT(std::abs(column.c[1]), 0.15) << column.c.transpose();
+    if (!column.added) continue;
+    EXPECT_LT(std::abs(column.c[1]), 0.15) << column.c.transpose();
   }
   const std::vector<Column> even = columns_of(test::unicycle({0, 0, 0}, {0, 0, 0}).dynamics, 0.05);
   EXPECT_EQ(even.size(), 48U);

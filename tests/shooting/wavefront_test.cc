@@ -201,7 +201,9 @@ TEST(Wavefront, OfTheGrushinPlaneIsACurve) {
       const double t = what == FrontKind::kCaustic ? v.conjugate_time : mesh.length;
       const double a = v.p0[1] * t;
       if (what == FrontKind::kCaustic) worst = std::max(worst, std::abs(std::tan(a) / a - 1) / a);
-      if (what == FrontKind::kSphere) EXPECT_LE(std::abs(a), pi * (1 + 1e-9));
+      if (what == FrontKind::kSphere) {
+        EXPECT_LE(std::abs(a), pi * (1 + 1e-9));
+      }
       const std::vector<double> end = grushin_end(v.p0[0], v.p0[1], t);
       worst = std::max({worst, std::abs(v.q[0] - end[0]), std::abs(v.q[1] - end[1])});
     }

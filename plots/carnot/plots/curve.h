@@ -17,7 +17,7 @@ struct Curve {
   double action = 0;
   std::optional<double> length;
   std::vector<std::pair<std::string, double>> extremes;  // named as in SceneInfo::extremes
-  std::vector<std::pair<double, double>> on_limits;      // times between which it keeps to one
+  std::vector<std::pair<double, double>> on_limits{};    // times between which it keeps to one
 };
 
 // "vehicle: name", markup.

@@ -496,12 +496,12 @@ Limit rescaled(const Limit& limit, const NaturalScales& scales) {
     const std::size_t n = units.size();
     double* const at = scratch(static_cast<int>(n));
     for (std::size_t j = 0; j < n; ++j) at[j] = q[j] * units[j];
-    const double result = value(at, gradient, hessian);
+    const double found = value(at, gradient, hessian);
     for (std::size_t j = 0; j < n && gradient != nullptr; ++j) gradient[j] *= units[j];
     for (std::size_t e = 0; e < n * n && hessian != nullptr; ++e) {
       hessian[e] *= units[e / n] * units[e % n];
     }
-    return result;
+    return found;
   };
   if (limit.held) {
     result.held = [held = limit.held, scales] {

@@ -89,7 +89,6 @@ std::optional<Geodesic> LimitedProblem::within(const Geodesic& geodesic) const {
 }
 
 std::optional<Path> LimitedProblem::path_along(const Geodesic& geodesic, int intervals) const {
-  const int n = problem.dynamics.dof;
   std::vector<double> z = geodesic.from;
   z.insert(z.end(), geodesic.p0.begin(), geodesic.p0.end());
   const long steps = std::max<long>(intervals, geodesic.plan.count);
