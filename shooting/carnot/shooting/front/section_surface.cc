@@ -6,6 +6,8 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include "carnot/numerics/parallel.h"
 #include "carnot/shooting/front/columns.h"
@@ -45,6 +47,19 @@ std::vector<std::array<int, 3>> triangles_of_disc() {
 }
 
 using Tetrahedron = std::array<int, 4>;
+constexpr std::array<std::pair<int, int>, 6> kSides{
+    {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
+
+// Where two sheets of the section pass between the ends of an edge, these are on one side of both.
+// Then the sheets would be joined. So such edges are split, and the parts of their neighbours in
+// the next round. On the vehicle at length 1 this adds 2,311 tetrahedra to 79,488 in four rounds.
+// Of edges of the section longer than 0.09 in which another place of the section is nearer to the
+// middle than the edge tells, by a quarter of it, 16 are left of 155.
+constexpr int kRounds = 4;
+
+double length_between(const UnitMomentum& a, const UnitMomentum& b) {
+  return std::hypot((a.c - b.c).norm(), (a.w - b.w).norm());
+}
 
 class LatticeCutter {
  public:
@@ -53,9 +68,13 @@ class LatticeCutter {
 
   Surface surface() {
     make_places();
-    make_values();
+    values_ = values_at(places_);
     make_tetrahedra();
-    for (const Tetrahedron& corners : tetrahedra_) cut(corners);
+    for (int round = 0; round < kRounds && split_edges(); ++round) {
+    }
+    for (const Tetrahedron& corners : tetrahedra_) {
+      if (is_known(corners)) cut(corners);
+    }
     return {zeros(), std::move(triangles_), {}};
   }
 
@@ -90,20 +109,21 @@ class LatticeCutter {
     }
   }
 
-  void make_values() {
+  // Of the condition, at these places.
+  [[nodiscard]] std::vector<double> values_at(const std::vector<UnitMomentum>& places) const {
     std::vector<std::vector<double>> momenta;
-    momenta.reserve(places_.size());
-    for (const UnitMomentum& place : places_) momenta.push_back(lattice_.momenta.momentum(place));
+    momenta.reserve(places.size());
+    for (const UnitMomentum& place : places) momenta.push_back(lattice_.momenta.momentum(place));
     std::vector<std::vector<double>> longest;
-    for (std::size_t k = kOnDisc - 1; k < momenta.size(); k += kOnDisc) {
-      longest.push_back(momenta[k]);
+    for (int k = kOnDisc - 1; k < kDiscs * kOnDisc; k += kOnDisc) {
+      longest.push_back(lattice_.momenta.momentum(places_[k]));
     }
     const int n = lattice_.dynamics.dof;
     const std::vector<double> ends = ray_ends(
         lattice_.dynamics, lattice_.from, momenta, longest, lattice_.length, lattice_.threads);
-    for (std::size_t k = 0; k < places_.size(); ++k) {
-      values_.push_back(section_.excess(&ends[k * n]));
-    }
+    std::vector<double> values(places.size());
+    for (std::size_t k = 0; k < places.size(); ++k) values[k] = section_.excess(&ends[k * n]);
+    return values;
   }
 
   void make_tetrahedra() {
@@ -113,24 +133,94 @@ class LatticeCutter {
         // In order, so that neighbouring prisms cut their common side by one diagonal.
         std::sort(corners.begin(), corners.end());
         const auto& [a, b, c] = corners;
-        add({base[0] + a, base[0] + b, base[0] + c, base[1] + c});
-        add({base[0] + a, base[0] + b, base[1] + b, base[1] + c});
-        add({base[0] + a, base[1] + a, base[1] + b, base[1] + c});
+        tetrahedra_.push_back({base[0] + a, base[0] + b, base[0] + c, base[1] + c});
+        tetrahedra_.push_back({base[0] + a, base[0] + b, base[1] + b, base[1] + c});
+        tetrahedra_.push_back({base[0] + a, base[1] + a, base[1] + b, base[1] + c});
       }
     }
   }
-  void add(const Tetrahedron& corners) {
+  // Whether the condition may vanish in between. Where the flow fails nothing is known, and values
+  // further apart than half a turn have a jump between them and no zero.
+  [[nodiscard]] bool is_known(const Tetrahedron& corners) const {
     double least = values_[corners[0]];
     double most = least;
-    bool known = true;  // where the flow fails nothing is
+    bool known = true;
     for (const int i : corners) {
       known = known && std::isfinite(values_[i]);
       least = std::min(least, values_[i]);
       most = std::max(most, values_[i]);
     }
-    // Values further apart than half a turn have a jump between them and no zero.
-    known = known && most - least < section_.farthest();
-    if (known) tetrahedra_.push_back(corners);
+    return known && most - least < section_.farthest();
+  }
+
+  // Splits the edges between whose ends the condition vanishes twice. False where there are none.
+  bool split_edges() {
+    std::vector<Edge> edges;
+    std::vector<UnitMomentum> middles;
+    for (const Tetrahedron& corners : tetrahedra_) {
+      for (const auto& [i, j] : kSides) {
+        const Edge edge = edge_of(corners[i], corners[j]);
+        if (!seen_.insert(edge).second) continue;
+        edges.push_back(edge);
+        middles.push_back(between(places_[edge.first], places_[edge.second], 0.5));
+      }
+    }
+    const std::vector<double> found = values_at(middles);
+    std::map<Edge, SplitEdge> split;
+    for (std::size_t k = 0; k < edges.size(); ++k) {
+      const auto& [a, b] = edges[k];
+      if (!vanishes_twice(values_[a], found[k], values_[b])) continue;
+      const double length = length_between(places_[a], places_[b]);
+      split.emplace(edges[k], SplitEdge{length, static_cast<int>(places_.size())});
+      places_.push_back(middles[k]);
+      values_.push_back(found[k]);
+    }
+    std::vector<Tetrahedron> whole;
+    whole.swap(tetrahedra_);
+    for (const Tetrahedron& corners : whole) add_parts(corners, split);
+    return !split.empty();
+  }
+  // Whether the parabola through three values vanishes twice between the outer ones.
+  [[nodiscard]] bool vanishes_twice(double a, double middle, double b) const {
+    const bool jumps =
+        !(std::abs(a - b) < section_.farthest()) || !(std::abs(a - middle) < section_.farthest());
+    if (jumps || (a > 0) != (b > 0)) return false;
+    if ((middle > 0) != (a > 0)) return true;
+    // It is a + slope x + curvature x^2 with x from 0 to 1, and its extreme value is looked at.
+    const double slope = 4 * middle - 3 * a - b;
+    const double curvature = 2 * (a + b) - 4 * middle;
+    const double at = -0.5 * slope / curvature;
+    return at > 0 && at < 1 && (a + 0.5 * slope * at > 0) != (a > 0);
+  }
+
+  struct SplitEdge {
+    double length;
+    int middle;  // its place
+  };
+  // Each part is cut in two by its longest edge that is split. So neighbours agree on their common
+  // side.
+  void add_parts(const Tetrahedron& corners, const std::map<Edge, SplitEdge>& split) {
+    const SplitEdge* longest = nullptr;
+    std::pair<int, int> side;
+    for (const auto& ends : kSides) {
+      const auto found = split.find(edge_of(corners[ends.first], corners[ends.second]));
+      if (found == split.end()) continue;
+      const SplitEdge& one = found->second;
+      const bool longer = longest == nullptr || one.length > longest->length ||
+                          (one.length == longest->length && one.middle < longest->middle);
+      if (!longer) continue;
+      longest = &one;
+      side = ends;
+    }
+    if (longest == nullptr) {
+      tetrahedra_.push_back(corners);
+      return;
+    }
+    for (const int end : {side.first, side.second}) {
+      Tetrahedron part = corners;
+      part[end] = longest->middle;
+      add_parts(part, split);
+    }
   }
 
   // The vertex on an edge of the lattice.
@@ -182,6 +272,7 @@ class LatticeCutter {
   std::vector<UnitMomentum> places_;
   std::vector<double> values_;  // of the condition
   std::vector<Tetrahedron> tetrahedra_;
+  std::set<Edge> seen_;        // edges whose middles were looked at
   std::map<Edge, int> zeros_;  // the vertex of an edge that is crossed
   std::vector<Edge> edges_;    // in the order of vertices
   std::vector<std::array<int, 3>> triangles_;
