@@ -21,11 +21,15 @@ bool same_kind(const Rival& a, const Rival& b) {
   return a.offset == b.offset && a.signs == b.signs;
 }
 
-bool has_partner(const CutValue& value) {
-  return value.known && !value.at_conjugate && std::isfinite(value.t);
-}
+bool has_partner(const CutValue& value) { return value.known && !value.partner.p.empty(); }
 
 }  // namespace
+
+long CutValues::unknown(double from) const {
+  return std::count_if(values_.begin(), values_.end(), [&](const CutValue& value) {
+    return !value.known && value.t >= from;
+  });
+}
 
 bool CutValues::go_on() {
   if (!stopped_ && options_.progress && !options_.progress(0)) stopped_ = true;
@@ -44,8 +48,8 @@ CutValue CutValues::searched(const std::vector<double>& p) {
   ++searches_;
   CutValue value;
   value.known = cut.status == CutStatus::kConverged;
-  value.t = cut.cut_time.value_or(kInfinity);
   value.conjugate = cut.conjugate_time.value_or(kInfinity);
+  value.t = cut.cut_time.value_or(value.conjugate);
   value.at_conjugate = cut.cut_time && !cut.partner_p0;
   if (!cut.partner_p0) return value;
   const auto n = p.size();
@@ -293,6 +297,7 @@ bool CutValues::add(const std::vector<std::vector<double>>& momenta,
   const int count = static_cast<int>(momenta.size());
   momenta_ = momenta;
   values_.assign(momenta.size(), {});
+  given_up_.assign(momenta.size(), 0);
   parallel_for(count, thread_count(options_.threads), [&](int i) {
     if (go_on()) values_[i].conjugate = conjugate_time(ray(i), options_.horizon);
   });
@@ -312,29 +317,31 @@ bool CutValues::search_some(const std::vector<int>& of) {
     const int i = of[static_cast<int>(place * count)];
     if (!go_on()) return;
     values_[i] = searched(momenta_[i]);
-    values_[i].known = true;  // or it would be tried for ever; t is then infinite
+    given_up_[i] = values_[i].known ? 0 : 1;
   });
   return !stopped_;
 }
 
 // From what is known to its neighbours, layer by layer; where this leads no further a few are
-// searched.
+// searched, and also in a part of the mesh that borders on nothing known.
 bool CutValues::spread(const std::vector<std::vector<int>>& neighbours) {
   const int count = static_cast<int>(values_.size());
   std::vector<long> tried(count, 0);  // with so many known neighbours
   for (;;) {
-    std::vector<int> border;
+    std::vector<int> rest;    // may be searched,
+    std::vector<int> border;  // of these, is beside what is known
     std::vector<int> layer;
     for (int i = 0; i < count; ++i) {
       if (values_[i].known) continue;
       const auto known = [&](int j) { return values_[j].known; };
       const auto helpers = std::count_if(neighbours[i].begin(), neighbours[i].end(), known);
-      if (helpers > 0) border.push_back(i);
+      if (given_up_[i] == 0) rest.push_back(i);
+      if (given_up_[i] == 0 && helpers > 0) border.push_back(i);
       if (helpers > tried[i]) layer.push_back(i);
       tried[i] = helpers;
     }
-    if (border.empty()) return !stopped_;
-    if (layer.empty() && !search_some(border)) return false;
+    if (layer.empty() && rest.empty()) break;
+    if (layer.empty() && !search_some(border.empty() ? rest : border)) return false;
     std::vector<CutValue> made(layer.size());
     parallel_for(static_cast<int>(layer.size()), thread_count(options_.threads), [&](int k) {
       const int i = layer[k];
@@ -343,6 +350,10 @@ bool CutValues::spread(const std::vector<std::vector<int>>& neighbours) {
     if (stopped_) return false;
     for (std::size_t k = 0; k < layer.size(); ++k) values_[layer[k]] = std::move(made[k]);
   }
+  for (CutValue& value : values_) {
+    if (!value.known) value.t = value.conjugate;
+  }
+  return !stopped_;
 }
 
 // Whether a neighbour has another kind of partner, which is met earlier.
@@ -352,11 +363,11 @@ bool CutValues::improve(int i, const std::vector<int>& neighbours, CutValue& val
   bool better = false;
   for (const int j : neighbours) {
     const CutValue& neighbour = values_[j];
+    if (!has_partner(neighbour)) continue;
     const bool same =
-        !value.at_conjugate && std::isfinite(value.t) && !neighbour.at_conjugate &&
-        same_kind(value.partner, neighbour.partner) &&
+        has_partner(value) && same_kind(value.partner, neighbour.partner) &&
         distance(value.partner.p, neighbour.partner.p) < kSamePartner * norm(momenta_[i]);
-    if (same || !has_partner(neighbour)) continue;
+    if (same) continue;
     const Led led = lead(own, this->neighbour(j), 1, AtEdge::kLeft, value);
     better = better || led == Led::kEarlier;
   }

@@ -30,7 +30,8 @@ namespace carnot::internal {
 
 struct CutValue {
   bool known = false;
-  double t = 0;          // infinite where there is none up to the horizon
+  // Infinite where there is none up to the horizon. Where it is not known, the conjugate time.
+  double t = 0;
   double conjugate = 0;  // the first conjugate time; infinite where there is none
   bool at_conjugate = false;
   Rival partner;  // where the cut is no conjugate time
@@ -65,6 +66,8 @@ class CutValues {
   [[nodiscard]] const CutValue& operator[](int i) const { return values_[i]; }
   [[nodiscard]] CutValue& operator[](int i) { return values_[i]; }
   [[nodiscard]] long searches() const { return searches_; }
+  // How many rays have cut times that are not known, and conjugate times from this one on.
+  [[nodiscard]] long unknown(double from) const;
   [[nodiscard]] bool stopped() const { return stopped_; }
 
   // Adds rays with these momenta, whose neighbours are given (also among each other), and finds
@@ -138,6 +141,7 @@ class CutValues {
   CutValuesOptions options_;
   std::vector<std::vector<double>> momenta_;
   std::vector<CutValue> values_;
+  std::vector<char> given_up_;  // whether a search has not found the cut time
   std::atomic<long> searches_{0};
   std::atomic<bool> stopped_{false};
 };
