@@ -50,7 +50,8 @@ SceneInfo plane() {
   return info;
 }
 
-const Trajectory kTrajectory{{0, 0.1}, {{1, 2}, {3, 4}}, {{5, 6}, {7, 8}}, {{9}, {10}}, {0.5, 0.5}};
+const Trajectory kTrajectory{
+    {0, 0.1}, {{1, 2}, {3, 4}}, {{5, 6}, {7, 8}}, {{9}, {10}}, {0.5, 0.5}, {}};
 
 TEST(CsvText, HasNamedColumns) {
   EXPECT_EQ(csv_text(plane(), 1, {&kTrajectory}),
