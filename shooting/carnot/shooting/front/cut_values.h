@@ -49,7 +49,7 @@ struct CutValuesOptions {
   std::vector<double> signs{};  // as in cut_time.h
   std::uint64_t seed = 0;
   int threads = 0;
-  Progress progress;  // returns false to stop
+  Progress progress{};  // returns false to stop
 };
 
 class CutValues {
