@@ -53,8 +53,8 @@ constexpr std::array<std::pair<int, int>, 6> kSides{
 // Where two sheets of the section pass between the ends of an edge, these are on one side of both.
 // Then the sheets would be joined. So such edges are split, and the parts of their neighbours in
 // the next round. On the vehicle at length 1 this adds 2,311 tetrahedra to 79,488 in four rounds.
-// Of edges of the section longer than 0.09 in which another place of the section is nearer to the
-// middle than the edge tells, by a quarter of it, 16 are left of 155.
+// Edges of the section that are longer than 0.09 and whose middle is led away by a quarter of their
+// length or more were 155 before, and are 16 now.
 constexpr int kRounds = 4;
 
 double length_between(const UnitMomentum& a, const UnitMomentum& b) {
@@ -139,6 +139,7 @@ class LatticeCutter {
       }
     }
   }
+
   // Whether the condition may vanish in between. Where the flow fails nothing is known, and values
   // further apart than half a turn have a jump between them and no zero.
   [[nodiscard]] bool is_known(const Tetrahedron& corners) const {
@@ -180,6 +181,7 @@ class LatticeCutter {
     for (const Tetrahedron& corners : whole) add_parts(corners, split);
     return !split.empty();
   }
+
   // Whether the parabola through three values vanishes twice between the outer ones.
   [[nodiscard]] bool vanishes_twice(double a, double middle, double b) const {
     const bool jumps =
