@@ -169,9 +169,10 @@ struct Dynamics {
                               std::span<const double> v,
                               std::span<double> terms,
                               std::span<double> jacobian = {}) const;
-  // The same for kMidpointLanes intervals side by side: number i of interval l is at
-  // i * kMidpointLanes + l of each array. False where one of them fails. Several times as fast.
+  // How many intervals `midpoints` and `discrete_lagrangians` take side by side.
   static constexpr int kMidpointLanes = 8;
+  // The same as `midpoint` for kMidpointLanes intervals: number i of interval l is at
+  // i * kMidpointLanes + l of each array. False where one of them fails. Several times as fast.
   [[nodiscard]] bool midpoints(std::span<const double> qm,
                                std::span<const double> v,
                                std::span<double> terms,

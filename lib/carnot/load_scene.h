@@ -66,8 +66,10 @@ TextScene scene_from_text(const std::string& text,
 // Reads a file; the scene is called like it. Throws std::invalid_argument where it can't be read.
 TextScene load_scene(const std::string& path);
 
-// As make_dynamics() of make_dynamics.h.
+// As make_dynamics() of make_dynamics.h, with a method of carnot's by its name.
 Dynamics make_dynamics(const TextScene& scene, std::string_view method = "gauss16");
+
+// The same with a method of the user's own.
 Dynamics make_dynamics(const TextScene& scene, const OwnMethod& own);
 
 }  // namespace carnot

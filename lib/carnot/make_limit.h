@@ -53,11 +53,13 @@ struct HeldScene {
   Scene scene;
   F f;
 
+  // That of the scene.
   template <class T>
   Matrix<T, kDof, kDof> mass(const Vector<T, kDof>& q) const {
     return scene.mass(q);
   }
 
+  // Those of the scene, and below them the row df(q).
   template <class T>
   Matrix<T, kMultipliers, kDof> constraints(const Vector<T, kDof>& q) const {
     Matrix<T, kMultipliers, kDof> rows;
@@ -66,6 +68,7 @@ struct HeldScene {
     return rows;
   }
 
+  // That of the scene.
   template <class T>
   T potential(const Vector<T, kDof>& q) const requires HasPotential<Scene> {
     return scene.potential(q);

@@ -35,9 +35,13 @@ struct BoundaryValueProblem {
         time(duration),
         limits(dynamics.info.limits) {}
 
+  // Whether coordinate j, from 0, is free at the start.
   [[nodiscard]] bool is_free_from(int j) const { return !free_from.empty() && free_from[j]; }
+  // Whether coordinate j, from 0, is free at the target.
   [[nodiscard]] bool is_free_to(int j) const { return !free_to.empty() && free_to[j]; }
+  // Whether any coordinate is free, at the start or at the target.
   [[nodiscard]] bool has_free_ends() const;
+  // Whether any coordinate is free at the target.
   [[nodiscard]] bool has_free_target() const;
 
   // Throws std::invalid_argument: wrong lengths, values that are not finite, T <= 0, constraints

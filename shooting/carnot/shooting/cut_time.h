@@ -45,6 +45,7 @@ struct CutTimeOptions {
 
 inline constexpr double kNaturalHorizon = 64;
 
+// How the search for a cut time ended.
 enum class CutStatus {
   kConverged,     // cut_time is known, or the extremal is the shortest up to max_time
   kNotConverged,  // no: see the message

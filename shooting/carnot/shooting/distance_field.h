@@ -44,15 +44,18 @@ class DistanceField {
                 const Field& field);
 
   // A file that `write` or `carnot atlas --field --output FILE.field` wrote: lines of text, then
-  // numbers of 32 bits and their checksum. Both throw std::runtime_error that names the file.
+  // numbers of 32 bits and their checksum. Throws std::runtime_error that names the file.
   static DistanceField read(const std::string& path);
+  // Writes such a file. Throws std::runtime_error that names the file where it cannot.
   void write(const std::string& path) const;
 
   // At most the length of every path between `from()` and q, an integral of sqrt(2 L); 0 beyond the
   // grid. q has an entry for each coordinate. Safe to call from many threads, allocates nothing.
   [[nodiscard]] double lower_bound(std::span<const double> q) const;
 
+  // The name of the scene whose paths are bounded.
   [[nodiscard]] const std::string& scene() const { return scene_; }
+  // Where these paths start: n coordinates in the scene's units.
   [[nodiscard]] const std::vector<double>& from() const { return from_; }
 
  private:

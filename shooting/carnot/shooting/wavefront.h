@@ -33,6 +33,8 @@
 
 namespace carnot {
 
+// What is drawn of the extremals from one place: their ends, those of the shortest paths, their
+// first conjugate points, or where they stop being shortest paths.
 enum class FrontKind { kFront, kSphere, kCaustic, kCut };
 
 struct FrontOptions {
