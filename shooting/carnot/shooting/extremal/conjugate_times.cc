@@ -236,8 +236,10 @@ TargetForm Planes::form_at(const Frame& frame,
   const int n = dynamics_.dof;
   MatrixXd x = product(s_, frame.plane.topRows(n));
   MatrixXd p = product(inverse_, frame.plane.bottomRows(n));
-  x /= x.norm();
-  p /= p.norm();
+  // The scales, not the norms of x and p: at a conjugate time all of x may vanish, and its sign is
+  // then that of a rounding error.
+  x /= s_.norm();
+  p /= inverse_.norm();
   MatrixXd conditions(n, n);
   MatrixXd fixed = MatrixXd::Zero(n, n);  // a row of zeros for each free coordinate
   std::vector<int> free;
