@@ -3,7 +3,8 @@
 # With CARNOT_PYTHON=ON in the environment, the package for Python is built and tested, too.
 source "$(dirname "${BASH_SOURCE[0]}")/prepare.sh"
 
-lists=("$root"/scripts/packages{,-test}.txt)
+# Doxygen is among them, for it tells which public members nothing describes.
+lists=("$root"/scripts/packages{,-test,-docs}.txt)
 python=${CARNOT_PYTHON:-OFF}
 [ "$python" = OFF ] || lists+=("$root/scripts/packages-python.txt")
 install_packages "${lists[@]}"
