@@ -295,7 +295,7 @@ std::optional<Graph> typical_graph(double begin,
   const int last = std::max(1, static_cast<int>(end * knots.segments));
   const double piece = (knots.segments == 1 ? end : 1.0 / knots.segments) * problem.time;
   const double first = begin * problem.time;
-  const long count = std::max(2L, std::lround(steps * piece / problem.time));
+  const long count = std::max(2L, std::lround(static_cast<double>(steps) * piece / problem.time));
   const double h = piece / static_cast<double>(count);
   MatrixXd plane = first_frame(problem, knots).plane;
   double scale = 1;
