@@ -145,6 +145,24 @@ TEST(Dense, CountsEigenvaluesBelowABound) {
   EXPECT_EQ(count_below(SmallMatrix::Zero(3, 3), 0), 0);
 }
 
+TEST(Dense, SpectralRadiusInAnyUnits) {
+  // Eigenvalues 2 exp(+-i angle) and 0.5, of a matrix that is no normal one.
+  constexpr double kUnits = 1e-9;  // what cancels has 13 digits fewer than there are in the trace
+  EXPECT_EQ(spectral_radius(MatrixXd::Zero(3, 3)), 0);
+  for (const double angle : {0.0, 0.1, 0.2, 0.4, 0.8, 1.6, 3.1}) {
+    MatrixXd a(3, 3);
+    a << 2 * std::cos(angle), -2 * std::sin(angle), 1,  //
+        2 * std::sin(angle), 2 * std::cos(angle), 1,    //
+        0, 0, 0.5;
+    const double radius = spectral_radius(a);
+    EXPECT_GT(radius, 2 * 0.95 * std::pow(3, -1.0 / 16)) << angle;
+    EXPECT_LT(radius, 2) << angle;
+    const Eigen::Vector3d d(1, 1e6, 1e-6);
+    const MatrixXd other = d.asDiagonal() * a * d.cwiseInverse().asDiagonal();
+    EXPECT_NEAR(spectral_radius(other), radius, kUnits) << angle;
+  }
+}
+
 TEST(Dense, SingularValuesDescend) {
   const MatrixXd left = orthonormal(random_matrix(6, 3, 7));
   const MatrixXd right = orthonormal(random_matrix(3, 3, 8));

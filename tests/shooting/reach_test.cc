@@ -25,8 +25,27 @@ TEST(Reach, CountsTheTurnsOfAnOscillator) {
   const Dynamics oscillator =
       test::from_text("coordinates x, v\ncontrols u\nx' = 3 v\nv' = u - 3 x\ncost = u^2 / 2\n");
   const Reach reach = reach_of({oscillator, {1, 0}, {0, 0}, 10});
-  constexpr double kAbout = 0.03;  // relative: the 16th root of a norm of the 16th power
+  constexpr double kAbout = 0.03;  // relative: the 16th root of a mean of 16th powers
   EXPECT_NEAR(reach.turns, 30, 30 * kAbout);
+}
+
+TEST(Reach, CountsTurnsInAnyUnits) {
+  // An oscillator beside a slower one, at a place in units u.
+  constexpr double kRoundOff = 1e-12;
+  const auto turns = [](double u) {
+    const std::string unit = std::to_string(u);
+    const Dynamics dynamics = test::from_text(
+        "coordinates x, v, y, w\ncontrols a, b\nlet unit = " + unit +
+        "\nx' = 3 unit v\nv' = a - 3 x / unit + y / (10 unit)\ny' = unit w\nw' = b - y / unit\n"
+        "cost = (a^2 + b^2) / 2\n");
+    return reach_of({dynamics, {u, 0, 0, 0}, {0, 0, u, 0}, 10}).turns;
+  };
+  const double reference = turns(1);
+  EXPECT_GT(reference, 0.8 * 30);
+  EXPECT_LT(reference, 30);
+  for (const double u : {0.001, 1000.0, 1e6}) {
+    EXPECT_NEAR(turns(u), reference, reference * kRoundOff) << u;
+  }
 }
 
 TEST(Reach, DoesNotDependOnUnits) {

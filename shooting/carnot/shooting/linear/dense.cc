@@ -149,6 +149,22 @@ std::optional<VectorXd> kernel_line(const MatrixXd& rows, double full_rank) {
 
 // Jacobi's method, row by row: small eigenvalues keep their digits beside large ones. Some ten
 // sweeps; ends where the entries beside the diagonal are round-off of those on it.
+double spectral_radius(const MatrixXd& a) {
+  const double scale = a.norm();
+  if (!(scale > 0)) return scale;  // zero, or not a number
+  MatrixXd power = a / scale;
+  for (int k = 0; k < 4; ++k) power = product(power, power);
+  // The products whose sum the last trace is may be too small for a double, their roots are not.
+  const MatrixXd roots = power.cwiseAbs().cwiseSqrt();
+  const double size = roots.cwiseProduct(roots.transpose()).maxCoeff();
+  if (!(size > 0)) return 0;
+  const auto n = static_cast<double>(a.rows());
+  const double mean16 = std::abs(power.trace()) / size / n;
+  const double mean32 = std::abs((power / size).cwiseProduct((power / size).transpose()).sum()) / n;
+  return scale * std::pow(size, 1.0 / 16) *
+         std::max(std::pow(mean16, 1.0 / 16), std::pow(mean32, 1.0 / 32));
+}
+
 int count_below(const SmallMatrix& a, double bound) {
   constexpr double kClear = 1e-6;  // of a pivot, relative: eliminated with, it costs six digits
   const Eigen::Index n = a.rows();

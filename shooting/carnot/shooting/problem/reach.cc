@@ -12,24 +12,6 @@ namespace {
 
 using Eigen::MatrixXd;
 
-// About the largest size of an eigenvalue: |A^16|^(1/16).
-double spectral_radius(const MatrixXd& a) {
-  double scale = a.norm();
-  if (!(scale > 0)) return 0;
-  MatrixXd power = a / scale;
-  double log_radius = std::log(scale);
-  double exponent = 1;
-  for (int k = 0; k < 4; ++k) {
-    power = product(power, power);
-    exponent *= 2;
-    const double size = power.norm();
-    if (!(size > 1e-200)) return 0;
-    power /= size;
-    log_radius += std::log(size) / exponent;
-  }
-  return std::exp(log_radius);
-}
-
 // The mean of diag(H_pp) along the straight line, brought to the manifold: what the start cannot
 // move for the constraints, other points can.
 std::vector<double> sizes_on_manifold(const BoundaryValueProblem& problem,
