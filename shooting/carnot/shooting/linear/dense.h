@@ -62,8 +62,8 @@ SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a);
 // About the largest size of an eigenvalue of an n x n matrix, from the means of their 16th and 32nd
 // powers. These are traces, so another unit of a coordinate, D A D^-1, changes nothing. Norms of
 // powers do not have that: |A^16|^(1/16) becomes 5.6 times as much where units are 1e12 apart. It
-// is exact where all eigenvalues are of one size and in phase, and at least 0.95 / n^(1/16) of the
-// largest one otherwise.
+// is exact where all eigenvalues are of one size and in phase, and about n^(1/16) times less than
+// the largest one where that is alone.
 double spectral_radius(const Eigen::MatrixXd& a);
 
 // How many eigenvalues of a symmetric matrix are below `bound`: as many as A - bound I has negative
