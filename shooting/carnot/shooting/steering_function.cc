@@ -118,6 +118,7 @@ std::vector<Steering> SteeringFunction::alternatives(std::span<const double> fro
     answers.push_back(Implementation::refused(std::move(refusal)));
   }
   std::vector<Steering> ways;
+  ways.reserve(answers.size());
   for (SteeringMemory::Value& answer : answers) {
     ways.push_back(own_->way(std::move(answer), from, to, question.sense));
   }

@@ -26,10 +26,10 @@ namespace {
 double stop_for(const NaturalScales& scales, const std::vector<double>& z, double tolerance) {
   constexpr double kStop = 3;  // of the tolerance: what is left is smaller by the contraction
   constexpr double kRoundOff = 100 * std::numeric_limits<double>::epsilon();
-  const std::size_t n = scales.q.size();
+  const auto n = static_cast<int>(scales.q.size());
   double least = std::numeric_limits<double>::infinity();
   double largest = 0;
-  for (std::size_t j = 0; j < n; ++j) {
+  for (int j = 0; j < n; ++j) {
     least = std::min({least, scales.q[j], scales.momentum(j)});
     largest = std::max({largest,
                         scales.q[j] * std::max(1.0, std::abs(z[j])),
@@ -59,10 +59,12 @@ StepPlan plan_for(const BoundaryValueProblem& problem,
     std::vector<double> fine = z;
     if (!problem.dynamics.flow(with(count), fine).completed()) continue;
     if (!coarse.empty()) {
-      const double error = largest_difference(coarse.data(), fine.data(), std::ssize(z));
+      const double error =
+          largest_difference(coarse.data(), fine.data(), static_cast<int>(z.size()));
       if (error <= tolerance) {
         const double part = std::pow(error / tolerance, 1.0 / problem.dynamics.order);
-        return with(std::lround(std::ceil(std::min(1.0, kSafety * part) * count / 2)));
+        return with(
+            std::lround(std::ceil(std::min(1.0, kSafety * part) * static_cast<double>(count) / 2)));
       }
     }
     coarse = std::move(fine);
@@ -169,7 +171,8 @@ WarmStart::Implementation::Implementation(const BoundaryValueProblem& problem,
   rough_ = plan_for(problem_, scales_, start, roughness_);
   plan_ = plan_for(problem_, scales_, start, kFine * tolerance);
   const double shorter = std::pow(kStricter, -1.0 / problem.dynamics.order);
-  check_ = StepPlan::equal(0, problem_.time, std::lround(std::ceil(shorter * plan_.count)));
+  check_ = StepPlan::equal(
+      0, problem_.time, std::lround(std::ceil(shorter * static_cast<double>(plan_.count))));
   check_.stop = kStricter * plan_.stop;
   ready_ = end_of(plan_, p0_, end_) &&
            (end_ - target_of(problem.to.data())).cwiseAbs().maxCoeff() <= kArrives;

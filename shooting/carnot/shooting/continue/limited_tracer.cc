@@ -19,6 +19,7 @@ std::vector<std::string> contacts_of(const Geodesic& geodesic) {
   }
   std::sort(contacts.begin(), contacts.end());
   std::vector<std::string> names;
+  names.reserve(contacts.size());
   for (auto& [begin, name] : contacts) names.push_back(std::move(name));
   return names;
 }

@@ -49,9 +49,9 @@ class Traveller {
     for (int i = 0; i < tableau_.stages(); ++i) {
       MatrixXd stage = state;
       for (int j = 0; j < i; ++j) stage += tableau_.mu(i, j) * increments[j];
-      auto slope = rate(stage);
+      const auto slope = rate(stage);
       if (!slope) return false;
-      increments.push_back(h * tableau_.omega[i] * std::move(*slope));
+      increments.emplace_back(h * tableau_.omega[i] * *slope);
     }
     for (int i = 0; i < tableau_.stages(); ++i) state += tableau_.update[i] * increments[i];
     return true;

@@ -132,6 +132,7 @@ void set_extremes(const BoundaryValueProblem& problem,
                   Geodesic& geodesic) {
   for (const Extreme& extreme : problem.dynamics.info.extremes) {
     std::vector<double> size;
+    size.reserve(nodes.size());
     for (const auto& q : nodes) size.push_back(std::abs(extreme.value(q.data())));
     const auto top = std::max_element(size.begin(), size.end());
     double largest = *top;

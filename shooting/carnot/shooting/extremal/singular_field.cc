@@ -96,7 +96,7 @@ MatrixXd SingularField::curvature(const VectorXd& v, const VectorXd& lambda) con
 }
 
 MatrixXd SingularField::covectors(const VectorXd& q) {
-  if (!set(q)) return MatrixXd(n_, 0);
+  if (!set(q)) return MatrixXd::Zero(n_, 0);
   const auto count = static_cast<int>(rows_.cols());
   MatrixXd bracket(1, count);  // c of each
   for (int a = 0; a < count; ++a) {

@@ -46,6 +46,7 @@ std::vector<long> points_beyond_jumps(const FieldGrid& grid, std::span<const dou
     }
   }
   std::vector<long> points;
+  points.reserve(times.size());
   for (const auto& [i, most] : times) points.push_back(i);
   std::stable_sort(
       points.begin(), points.end(), [&times](long a, long b) { return times.at(a) > times.at(b); });

@@ -77,9 +77,10 @@ void lead_one(const Umbilic& umbilic,
   CuspLine& line = lines[main.line];
   if (main.first) std::reverse(line.points.begin(), line.points.end());
   // From the line to the umbilic: those that are nearer come later.
-  for (auto end = ends.rbegin(); end != ends.rend(); ++end) {
-    CuspLine& piece = lines[end->line];
-    if (end->line == main.line || end->away >= main.away || piece.points.empty()) continue;
+  for (std::size_t k = ends.size(); k-- > 0;) {
+    const End& end = ends[k];
+    CuspLine& piece = lines[end.line];
+    if (end.line == main.line || end.away >= main.away || piece.points.empty()) continue;
     if (piece.first_umbilic >= 0 || piece.last_umbilic >= 0) continue;
     const auto points = towards(umbilic, std::move(piece.points));
     line.points.insert(line.points.end(), points.begin(), points.end());

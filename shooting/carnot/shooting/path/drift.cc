@@ -45,8 +45,12 @@ bool midpoint_step(HamiltonianTerms& terms,
 
 }  // namespace
 
-std::vector<std::vector<double>> drift_nodes(
-    const Dynamics& dynamics, double d, std::vector<double> q, double t, double h, int steps) {
+std::vector<std::vector<double>> drift_nodes(const Dynamics& dynamics,
+                                             double d,
+                                             const std::vector<double>& q,
+                                             double t,
+                                             double h,
+                                             int steps) {
   HamiltonianTerms terms(dynamics, d);
   std::vector<std::vector<double>> nodes{q};
   std::vector<double> next(q.size());

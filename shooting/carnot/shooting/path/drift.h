@@ -10,7 +10,11 @@ namespace carnot::internal {
 
 // The nodes of the midpoint rule for q' = d H_p(t, q, 0), `steps` steps of length h from q at time
 // t; backwards where h is negative. It ends early where the rule has no solution near.
-std::vector<std::vector<double>> drift_nodes(
-    const Dynamics& dynamics, double d, std::vector<double> q, double t, double h, int steps);
+std::vector<std::vector<double>> drift_nodes(const Dynamics& dynamics,
+                                             double d,
+                                             const std::vector<double>& q,
+                                             double t,
+                                             double h,
+                                             int steps);
 
 }  // namespace carnot::internal

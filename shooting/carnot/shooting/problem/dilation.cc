@@ -88,6 +88,7 @@ struct Direction {
 
 std::vector<int> fields_of(const std::vector<Direction>& directions) {
   std::vector<int> fields;
+  fields.reserve(directions.size());
   for (const Direction& direction : directions) fields.push_back(direction.field);
   return fields;
 }

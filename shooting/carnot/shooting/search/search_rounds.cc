@@ -164,7 +164,7 @@ std::vector<double> Search::momentum_scale() const {
   double largest = 0;
   for (const Extremal& extremal : extremals_) {
     const Geodesic& geodesic = extremal.geodesic;
-    for (std::size_t j = 0; j < geodesic.p0.size(); ++j) {
+    for (int j = 0; j < problem_.dynamics.dof; ++j) {
       const double size = std::abs(geodesic.p0[j]);
       scale[j] = std::max(scale[j], size);
       largest = std::max(largest, size / natural.row(j).norm());

@@ -73,7 +73,7 @@ std::vector<double> draw(const BoundaryValueProblem& problem, const SweepOptions
   const BoundaryValueProblem moved = with_ends_moved(problem, sizes, random);
   std::vector<double> z = moved.from;
   const std::vector<double> p = draw_momentum(moved, options, random);
-  if (p.empty()) return p;
+  if (p.empty()) return {};
   z.insert(z.end(), p.begin(), p.end());
   return start_unknowns(problem, z.data());
 }

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <nlopt.hpp>
+#include <utility>
 
 #include "carnot/shooting/shoot/multiple_shooting.h"
 #include "carnot/shooting/shoot/shooting_equations.h"
@@ -19,8 +20,8 @@ namespace {
 // Residuals and Jacobian of all segments at stacked unknowns, each divided by its own scale.
 class Stacked {
  public:
-  Stacked(const ShootingEquations& equations, const Knots& knots)
-      : equations_(equations), knots_(knots) {}
+  Stacked(const ShootingEquations& equations, Knots knots)
+      : equations_(equations), knots_(std::move(knots)) {}
 
   [[nodiscard]] int unknowns() const { return equations_.unknowns(); }
 

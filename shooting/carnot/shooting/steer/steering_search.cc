@@ -30,8 +30,8 @@ SteeringAnswer answer_of(Geodesic geodesic) {
 
 }  // namespace
 
-SteeringSearch::SteeringSearch(Dynamics dynamics, const SteeringOptions& options)
-    : dynamics_(std::move(dynamics)), options_(options) {
+SteeringSearch::SteeringSearch(Dynamics dynamics, SteeringOptions options)
+    : dynamics_(std::move(dynamics)), options_(std::move(options)) {
   const std::vector<double> zero(dynamics_.dof, 0.0);
   options_of_search(1).validate({dynamics_, zero, zero});
   if (!(options_.time > 0) || !std::isfinite(options_.time)) {
@@ -160,6 +160,7 @@ std::vector<std::shared_ptr<const SteeringAnswer>> SteeringSearch::answers(
   }
   if (list.empty()) list.push_back(std::move(failure));
   std::vector<std::shared_ptr<const SteeringAnswer>> shared;
+  shared.reserve(list.size());
   for (SteeringAnswer& answer : list) {
     shared.push_back(std::make_shared<const SteeringAnswer>(std::move(answer)));
   }

@@ -35,7 +35,7 @@ inline constexpr long kSteeringSamples = 33;
 class SteeringSearch {
  public:
   // Throws std::invalid_argument on options out of range.
-  SteeringSearch(Dynamics dynamics, const SteeringOptions& options);
+  SteeringSearch(Dynamics dynamics, SteeringOptions options);
 
   [[nodiscard]] const Dynamics& dynamics() const { return dynamics_; }
   [[nodiscard]] const SteeringOptions& options() const { return options_; }
