@@ -7,6 +7,7 @@
 #include <fstream>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "atlas/atlas_hdf5.h"
 #include "text/output_file.h"
@@ -16,8 +17,8 @@ namespace {
 
 class TextWriter : public AtlasWriter {
  public:
-  TextWriter(const std::string& path, const std::string& name)
-      : name_(name), file_(path, std::ios::binary) {}
+  TextWriter(const std::string& path, std::string name)
+      : name_(std::move(name)), file_(path, std::ios::binary) {}
   void finish() override {
     file_.close();
     check();

@@ -190,7 +190,7 @@ std::optional<BoundaryResult> run_boundary_benchmark(const BoundaryOptions& opti
   constexpr double kTable = 0.5;  // of the work
   const Progress table = part_of(progress, 0, kTable);
   BoundaryResult result;
-  const double all = static_cast<double>(problems().size() * solvers.size());
+  const auto all = static_cast<double>(problems().size() * solvers.size());
   double done = 0;
   for (BoundaryProblemEntry problem : problems()) {
     const BoundaryValueProblem joined = from_origin(make(problem.scene), problem.to);

@@ -78,6 +78,7 @@ std::vector<double> median_seconds(const std::vector<std::function<void()>>& cal
     }
   }
   std::vector<double> medians;
+  medians.reserve(seconds.size());
   for (const auto& of_call : seconds) medians.push_back(median(of_call));
   return medians;
 }

@@ -78,8 +78,8 @@ GridPath blind_path(const BoundaryValueProblem& problem, std::uint64_t seed, int
   for (int j = 0; j < n; ++j) way += std::pow(problem.to[j] - problem.from[j], 2);
   const double size = i == 0 ? 0 : std::sqrt(way);
   GridPath path;
-  path.u.assign(static_cast<std::size_t>(kBlindIntervals * m), 0.0);
-  path.q.resize(static_cast<std::size_t>((kBlindIntervals + 1) * n));
+  path.u.assign(std::size_t{kBlindIntervals} * m, 0.0);
+  path.q.resize((std::size_t{kBlindIntervals} + 1) * n);
   for (int j = 0; j < n; ++j) {
     const double first = size * normal(generator);
     const double second = size * normal(generator);
@@ -225,7 +225,7 @@ std::optional<std::vector<DirectRow>> run_direct_benchmark(
   const std::vector<int> grids{coarsest, 2 * coarsest, 4 * coarsest};
   std::vector<DirectRow> rows;
   for (const DirectProblem& entry : problems) {
-    const double done = static_cast<double>(rows.size());
+    const auto done = static_cast<double>(rows.size());
     if (progress && !progress(done / static_cast<double>(problems.size()))) return std::nullopt;
     const BoundaryValueProblem problem = problem_of(entry);
     GeodesicOptions search;
