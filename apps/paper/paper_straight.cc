@@ -50,7 +50,8 @@ double unstable_part(const std::vector<double>& z) {
   return form(left, deviation) / form(left, eigenvector(kRate));
 }
 
-// On the line at x = y = 0. The rates of what leaves it are those above, times the speed.
+// On the line at x = y = 0, its direction turned by `angle`. What leaves it grows at the rates
+// above times the speed.
 std::vector<double> on_the_line(double angle, double speed = 1) {
   return {0, 0, angle, angle, speed * std::cos(angle), speed * std::sin(angle), 0, 0};
 }

@@ -147,7 +147,7 @@ TEST(Dense, CountsEigenvaluesBelowABound) {
 
 TEST(Dense, SpectralRadiusInAnyUnits) {
   // Eigenvalues 2 exp(+-i angle) and 0.5, of a matrix that is no normal one.
-  constexpr double kUnits = 1e-9;  // what cancels has 13 digits fewer than there are in the trace
+  constexpr double kUnits = 1e-9;  // round-off of traces in which terms cancel
   EXPECT_EQ(spectral_radius(MatrixXd::Zero(3, 3)), 0);
   for (const double angle : {0.0, 0.1, 0.2, 0.4, 0.8, 1.6, 3.1}) {
     MatrixXd a(3, 3);

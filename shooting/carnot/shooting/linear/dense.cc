@@ -159,8 +159,9 @@ double spectral_radius(const MatrixXd& a) {
   const double size = roots.cwiseProduct(roots.transpose()).maxCoeff();
   if (!(size > 0)) return 0;
   const auto n = static_cast<double>(a.rows());
-  const double mean16 = std::abs(power.trace()) / size / n;
-  const double mean32 = std::abs((power / size).cwiseProduct((power / size).transpose()).sum()) / n;
+  power /= size;
+  const double mean16 = std::abs(power.trace()) / n;
+  const double mean32 = std::abs(power.cwiseProduct(power.transpose()).sum()) / n;
   return scale * std::pow(size, 1.0 / 16) *
          std::max(std::pow(mean16, 1.0 / 16), std::pow(mean32, 1.0 / 32));
 }

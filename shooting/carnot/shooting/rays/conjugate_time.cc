@@ -230,7 +230,9 @@ class Count {
 // that fails.
 double steps_of_tangents(const Dynamics& dynamics, std::vector<double> z, double length) {
   constexpr double kFraction = 1.0 / 512;
-  constexpr double kTurn = 1.6;  // by mean powers, which are 1.2 to 1.5 times less than the sums
+  // The radius is one by mean powers, which is less than the largest one. On rays of five scenes so
+  // many steps are 0.83 to 1.03 of what two radians by sums of powers asked for.
+  constexpr double kTurn = 1.6;
   const int n = dynamics.dof;
   RowMajor m(2 * n, 2 * n);
   const std::span<double> rows(m.data(), static_cast<std::size_t>(m.size()));
