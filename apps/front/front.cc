@@ -18,7 +18,8 @@ at the length R. sphere: those that are shortest paths up to there, sewn along t
 their first conjugate points, or those of --order K, at lengths up to R; cut: where they stop being
 shortest, at lengths up to R. For scenes with two or three admissible directions, and any with two
 coordinates; where there are more than three coordinates, --fix momenta until a surface is left, and
-see a section. Of a front, a condition on the ends leaves one, too: --fix theta=phi, or theta=0.5.
+see a section. A condition on the ends leaves one, too, of a front or of a sphere in four coordinates:
+--fix theta=phi, or theta=0.5.
 --cusps tells the cusp lines of a caustic, closed or open, its umbilics with their type, and
 swallowtails. What is left out is said. Columns of a .csv: q_NAME..., p0_NAME..., t_cut, t_conj, length,
 label; p0 is of speed 1.
@@ -35,6 +36,7 @@ Examples
   carnot front heisenberg-group --from 0,0,0 --what front --length 0.5,1 --output front.ply
   carnot front engel --from 0,0,0,0 --what front --length 1 --fix p_x4=0 --output engel.vtp
   carnot front vehicle --from 0,0,0,0 --what front --length 1 --fix theta=phi --plot vehicle.png
+  carnot front vehicle --from 0,0,0,0 --what sphere --length 1 --fix theta=phi --check --plot ball.png
   carnot front grushin --from 0,0 --what sphere --length 1,2 --check --plot spheres.png
   carnot front unicycle --from 0,0,0 --what caustic --length 8 --order 2 --plot second.png
   carnot front unicycle --from 0,0,0 --momentum 0.4,0.3,0.9 --what cut

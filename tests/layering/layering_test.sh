@@ -17,7 +17,7 @@ scenes='carnot/scenes/[a-z0-9_]+\.h'
 # The rooms of a layer from the top floor down: folders, or headers that are not in a folder.
 lib_rooms='make_limit make_inlined_dynamics make_rattle_dynamics make_dynamics load_scene language laws dynamics transcription flow step tableau system scenes scene
   numerics'
-shooting_rooms='ompl_state_space distance_field solve_many solve_field field continuation warm_start steering_function wavefront front cut_time rays steer continue
+shooting_rooms='ompl_state_space distance_field wavefront front solve_many solve_field field continuation warm_start steering_function cut_time rays steer continue
   find_geodesics search extremal shoot path problem geodesic_options boundary_value_problem geodesic
   reason linear'
 apps_rooms='ompl main laboratory program benchmark paper verify tables flow front atlas geodesic continue run catalogue text'

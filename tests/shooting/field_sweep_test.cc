@@ -93,6 +93,23 @@ TEST(FieldGrid, ReflectsPoints) {
   EXPECT_EQ(aside.image(2, {0}, {-1, 1, 1}).index, -1);
 }
 
+// y = 0.5 x + its own value, and z = 2 x + 1.
+TEST(FieldGrid, LetsCoordinatesFollow) {
+  const FieldGrid grid{
+      {0, 0, 1}, {{0, {-2, 0, 2}, false, 0}, {1, {-1, 0, 1}, false, 0}}, {{1, 0, 0.5}, {2, 0, 2}}};
+  EXPECT_EQ(grid.target(0), (std::vector<double>{-2, -2, -3}));
+  EXPECT_EQ(grid.target(7), (std::vector<double>{2, 1, 5}));
+  const Eigen::VectorXd along = grid.change(0, 2);
+  EXPECT_EQ(along, Eigen::Vector3d(2, 1, 4));
+  EXPECT_EQ(grid.change(1, 2), Eigen::Vector3d(0, 2, 0));
+  // A mirror of all three takes z = 2 x + 1 to z = 2 x - 1; without the 1 it is on the grid.
+  EXPECT_EQ(grid.image(0, {0, 0}, {-1, -1, -1}).index, -1);
+  FieldGrid even = grid;
+  even.to[2] = 0;
+  EXPECT_EQ(even.image(0, {0, 0}, {-1, -1, -1}).index, 8);
+  EXPECT_EQ(even.image(1, {0, 0}, {-1, 1, 1}).index, -1);
+}
+
 // What is known on one side of the mirror is known on the other.
 TEST_F(AcrossTheAxis, IsTheSameInMirrors) {
   ASSERT_EQ(sweep.spread(1, {}), Spread::kSettled);

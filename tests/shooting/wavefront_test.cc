@@ -540,7 +540,12 @@ TEST(Wavefront, RefusesWhatHasNoSurface) {
   with_section({0, 4, 0});
   with_section({1, 1, 0});
   with_section({1, -1, std::numeric_limits<double>::infinity()});
-  with_section({1, -1, 0}, FrontKind::kSphere);
+  with_section({1, -1, 0}, FrontKind::kCaustic);
+  with_section({1, -1, 0}, FrontKind::kCut);
+  refused(unicycle(), origin, [](FrontOptions& o) {
+    o.what = FrontKind::kSphere;
+    o.section = EndCondition{2, -1, 0};
+  });
   FrontOptions stopped = coarse(FrontKind::kCut, 1);
   stopped.progress = [](double) { return false; };
   EXPECT_FALSE(wavefront(unicycle(), origin, stopped).finished);

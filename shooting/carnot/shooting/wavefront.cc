@@ -24,10 +24,12 @@
 #include "carnot/shooting/front/image_scale.h"
 #include "carnot/shooting/front/ray_ends.h"
 #include "carnot/shooting/front/seam.h"
+#include "carnot/shooting/front/section_sphere.h"
 #include "carnot/shooting/front/section_surface.h"
 #include "carnot/shooting/front/surface.h"
 #include "carnot/shooting/front/unit_momenta.h"
 #include "carnot/shooting/linear/illinois.h"
+#include "carnot/shooting/problem/turn_rates.h"
 #include "carnot/shooting/rays/conjugate_time.h"
 #include "carnot/shooting/rays/ray.h"
 
@@ -72,7 +74,10 @@ void validate(const Dynamics& dynamics,
   }
   if (!options.section) return;
   const EndCondition& end = *options.section;
-  refuse_unless(options.what == FrontKind::kFront, "a condition on the ends is one of a front");
+  refuse_unless(options.what == FrontKind::kFront || options.what == FrontKind::kSphere,
+                "a condition on the ends is one of a front or of a sphere");
+  refuse_unless(options.what == FrontKind::kFront || (dynamics.dof == 4 && options.fixed.empty()),
+                "the sphere of a section is of a scene with four coordinates");
   refuse_unless(end.coordinate >= 0 && end.coordinate < dynamics.dof && end.equal >= -1 &&
                     end.equal < dynamics.dof && std::isfinite(end.value),
                 "there is no such coordinate");
@@ -632,6 +637,71 @@ class FrontMaker {
   std::atomic<bool> stopped_{false};
 };
 
+// Whether places may be as near whose angles agree but for whole turns.
+bool may_turn(const Dynamics& dynamics,
+              const std::vector<double>& from,
+              const EndCondition& condition,
+              double length) {
+  const double period = dynamics.info.configuration[condition.coordinate].period;
+  if (period == 0) return false;
+  const std::vector<double> rates = turn_rates({dynamics, from, from, length});
+  double rate = rates[condition.coordinate];
+  if (condition.equal >= 0) rate += rates[condition.equal];
+  return !(rate * length < period - std::abs(condition.value));
+}
+
+// The sphere of a section by a condition on the ends.
+void make_section_sphere(const Dynamics& dynamics,
+                         const std::vector<double>& from,
+                         const FrontOptions& options,
+                         FrontMesh& mesh) {
+  constexpr double kHorizon = 2;  // lengths, that conjugate times are followed to
+  const SectionOptions how{*options.section,
+                           options.length,
+                           options.edge,
+                           options.seed,
+                           options.threads,
+                           options.progress};
+  SectionSphere sphere = section_sphere(dynamics, from, how);
+  mesh.finished = sphere.finished;
+  mesh.length = options.length;
+  mesh.searches = sphere.searches;
+  if (!mesh.finished) return;
+  for (SphereVertex& one : sphere.vertices) {
+    FrontVertex vertex{std::move(one.q), std::move(one.p0)};
+    if (one.on_seam) vertex.cut_time = options.length;
+    const bool known = std::isfinite(vertex.p0[0]);
+    vertex.label = one.on_seam ? "maxwell" : known ? "sphere" : "unknown";
+    mesh.vertices.push_back(std::move(vertex));
+  }
+  parallel_for(static_cast<int>(mesh.vertices.size()), thread_count(options.threads), [&](int i) {
+    FrontVertex& vertex = mesh.vertices[i];
+    if (std::isnan(vertex.p0[0])) return;
+    vertex.conjugate_time =
+        conjugate_time(Ray(dynamics, from, vertex.p0), kHorizon * options.length);
+  });
+  mesh.triangles = std::move(sphere.triangles);
+  const Topology topology = topology_of({{}, mesh.triangles, {}});
+  mesh.closed = topology.closed && !mesh.triangles.empty();
+  mesh.euler = topology.euler;
+  if (mesh.closed) mesh.volume = sphere.volume;
+  std::ostringstream text;
+  const auto add = [&text]() -> std::ostream& { return text << (text.str().empty() ? "" : "; "); };
+  if (mesh.triangles.empty()) add() << "no place of the section is as near as the length";
+  if (sphere.unknown > 0) {
+    add() << "the distances of " << sphere.unknown
+          << " places of the grid are not known, and taken for farther than the length";
+  }
+  if (sphere.rough > 0) {
+    add() << "no extremals were found to " << sphere.rough
+          << " vertices, which are between two places of the grid";
+  }
+  if (may_turn(dynamics, from, *options.section, options.length)) {
+    add() << "places whose angles agree but for whole turns are left out";
+  }
+  mesh.message = text.str();
+}
+
 }  // namespace
 
 std::vector<int> seen_coordinates(const Dynamics& dynamics, const FrontOptions& options) {
@@ -661,7 +731,11 @@ FrontMesh wavefront(const Dynamics& dynamics,
   const auto began = std::chrono::steady_clock::now();
   check_wavefront(dynamics, from, options);
   FrontMesh mesh;
-  FrontMaker(dynamics, from, options).run(mesh);
+  if (options.section && options.what == FrontKind::kSphere) {
+    make_section_sphere(dynamics, from, options, mesh);
+  } else {
+    FrontMaker(dynamics, from, options).run(mesh);
+  }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - began;
   mesh.elapsed_seconds = elapsed.count();
   return mesh;

@@ -17,7 +17,7 @@
 //
 // For scenes with two or three admissible directions, and any with two coordinates. With two or
 // three coordinates the mesh is the whole; with more it is a section: momenta are fixed until a
-// surface is left, or a condition on the ends of a front leaves one.
+// surface is left, or a condition on the ends of a front or a sphere leaves one.
 #pragma once
 
 #include <array>
@@ -41,7 +41,9 @@ struct FrontOptions {
   FrontKind what = FrontKind::kFront;
   double length = 1;                            // R
   std::vector<std::pair<int, double>> fixed{};  // momenta p_j(0)
-  // Of a front whose momenta are a circle times a plane: what holds at all ends.
+  // What holds at all ends: of a front whose momenta are a circle times a plane, or of a sphere in
+  // four coordinates, which is then the places of the section at the distance R. Angles that differ
+  // by whole turns agree on a front, and do not on a sphere. Cut times are those on the seam.
   std::optional<EndCondition> section{};
   int order = 1;       // of a caustic: the k-th conjugate points, with multiplicity
   bool cusps = false;  // cusp lines and umbilics of a caustic
@@ -70,7 +72,8 @@ struct FrontVertex {
   double cut_time = std::numeric_limits<double>::quiet_NaN();
   double conjugate_time = std::numeric_limits<double>::quiet_NaN();
   // front, sphere, caustic or cut; on a seam: maxwell or conjugate; of singular points of a
-  // caustic: cusp, swallowtail, hyperbolic umbilic or elliptic umbilic
+  // caustic: cusp, swallowtail, hyperbolic umbilic or elliptic umbilic; of the section of a sphere
+  // where no extremal was found: unknown
   const char* label = "";
 };
 
@@ -95,7 +98,8 @@ struct FrontMesh {
   std::vector<FrontVertex> umbilics;         // where two sheets of a caustic meet
   std::vector<FrontVertex> swallowtails;     // where a cusp line has a cusp; good to 1e-6
   // Whether each edge is in two triangles (each vertex in two segments), and then the Euler
-  // characteristic and, with two or three coordinates, the area or the volume inside.
+  // characteristic and the area or the volume inside: with two or three coordinates, and of the
+  // section of a sphere in those that are left.
   bool closed = false;
   int euler = 0;
   double volume = std::numeric_limits<double>::quiet_NaN();

@@ -117,11 +117,16 @@ Reason FieldSearches::failure(long i) const {
 bool FieldSearches::rests(long i) const {
   constexpr double kRounded = 4 * std::numeric_limits<double>::epsilon();
   std::vector<double> near = grid_.target(i);
+  std::vector<double> largest(near.size(), 0.0);
   for (const FieldGrid::Axis& axis : grid_.axes) {
-    const double largest = std::max(std::abs(axis.values.front()), std::abs(axis.values.back()));
-    const double start = problem_.from[axis.coordinate];
-    double& there = near[axis.coordinate];
-    if (std::abs(there - start) <= kRounded * largest) there = start;
+    largest[axis.coordinate] = std::max(std::abs(axis.values.front()), std::abs(axis.values.back()));
+  }
+  for (const auto& [coordinate, leader, ratio] : grid_.followers) {
+    largest[coordinate] += std::abs(ratio) * largest[leader];
+  }
+  for (std::size_t j = 0; j < near.size(); ++j) {
+    const double start = problem_.from[j];
+    if (std::abs(near[j] - start) <= kRounded * largest[j]) near[j] = start;
   }
   return near == problem_.from;
 }

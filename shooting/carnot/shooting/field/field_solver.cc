@@ -29,6 +29,9 @@ NaturalScales scales_of(const BoundaryValueProblem& problem, const FieldGrid& gr
     const double b = axis.values.back();
     farthest.to[axis.coordinate] = std::abs(a - start) > std::abs(b - start) ? a : b;
   }
+  for (const FieldGrid::Follower& one : grid.followers) {
+    farthest.to[one.coordinate] += one.ratio * farthest.to[one.leader];
+  }
   const bool regular = end_status(farthest.dynamics, farthest.to) == RateStatus::kOk;
   return natural_scales(regular ? farthest : problem);
 }
@@ -37,6 +40,9 @@ FieldGrid in_scales(FieldGrid grid, const NaturalScales& scales) {
   for (std::size_t j = 0; j < grid.to.size(); ++j) grid.to[j] /= scales.q[j];
   for (FieldGrid::Axis& axis : grid.axes) {
     for (double& x : axis.values) x /= scales.q[axis.coordinate];
+  }
+  for (FieldGrid::Follower& one : grid.followers) {
+    one.ratio *= scales.q[one.leader] / scales.q[one.coordinate];
   }
   return grid;
 }
@@ -336,6 +342,9 @@ std::vector<double> FieldSolver::identity() const {
     numbers.push_back(axis.coordinate);
     numbers.push_back(axis.period);
     numbers.insert(numbers.end(), axis.values.begin(), axis.values.end());
+  }
+  for (const auto& [coordinate, leader, ratio] : own_grid_.followers) {
+    for (const double x : {1.0 * coordinate, 1.0 * leader, ratio}) numbers.push_back(x);
   }
   numbers.push_back(own_.time);
   numbers.push_back(static_cast<double>(options_.search.seed));

@@ -44,9 +44,7 @@ FieldWave::Push FieldWave::promised(const FieldPoint& from,
 void FieldWave::push(const FieldPoint& from, std::size_t axis, const FieldGrid::Step& step) {
   std::vector<int> windings = from.windings;
   windings[axis] += step.turns;
-  SmallVector dq = SmallVector::Zero(from.p0.size());
-  dq[grid_.axes[axis].coordinate] = step.length;
-  add(promised(from, step.index, std::move(windings), std::move(dq)));
+  add(promised(from, step.index, std::move(windings), grid_.change(axis, step.length)));
 }
 
 bool FieldWave::awaits(long i) const {

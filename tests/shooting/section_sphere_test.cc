@@ -1,0 +1,144 @@
+// Spheres of sections: closed, exact at each vertex, and nothing is nearer than searches tell.
+#include "carnot/shooting/front/section_sphere.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "carnot/shooting/find_geodesics.h"
+#include "carnot/shooting/front/level_point.h"
+#include "carnot/shooting/rays/ray.h"
+#include "carnot/shooting/wavefront.h"
+#include "shooting/problems.h"
+
+namespace carnot::section_sphere_test {
+namespace {
+
+const std::vector<double> kOrigin(4, 0.0);
+constexpr double kRoundOff = 1e-10;  // of flows, relative to widths of one
+
+Dynamics vehicle() { return test::vehicle(kOrigin, kOrigin).dynamics; }
+
+FrontOptions aligned() {
+  FrontOptions options;
+  options.what = FrontKind::kSphere;
+  options.section = EndCondition{2, 3, 0};  // theta = phi
+  options.edge = 0.25;
+  return options;
+}
+
+double length_to(const std::vector<double>& q) {
+  GeodesicOptions options;
+  options.mod_angles = false;
+  const GeodesicReport report = find_geodesics({vehicle(), kOrigin, q, 1}, options);
+  return report.geodesics.empty() ? std::nan("") : std::sqrt(2 * report.geodesics[0].action);
+}
+
+// Each vertex is the end of an extremal of unit speed, in the section, and no way there is shorter.
+// Where the section is cut, neighbours meet: the mesh has no border.
+TEST(SectionSphere, OfTheVehicleIsClosedAndExact) {
+  const Dynamics dynamics = vehicle();
+  const FrontMesh mesh = wavefront(dynamics, kOrigin, aligned());
+  ASSERT_TRUE(mesh.finished);
+  EXPECT_EQ(mesh.message, "");
+  EXPECT_TRUE(mesh.closed);
+  EXPECT_GT(mesh.volume, 0.011);  // 0.0116 on a mesh of edges of 0.1
+  EXPECT_LT(mesh.volume, 0.012);
+  ASSERT_GT(mesh.vertices.size(), 1000U);
+  int seam = 0;
+  for (const FrontVertex& vertex : mesh.vertices) {
+    EXPECT_NEAR(vertex.q[2], vertex.q[3], kRoundOff);
+    const internal::Ray ray(dynamics, kOrigin, vertex.p0);
+    const std::vector<double> end = ray.at(1, 2 * ray.enough_steps(1));
+    ASSERT_EQ(end.size(), 8U);
+    for (int j = 0; j < 4; ++j) EXPECT_NEAR(end[j], vertex.q[j], kRoundOff);
+    EXPECT_NEAR(internal::speed_of(dynamics, kOrigin, vertex.p0), 1, kRoundOff);
+    EXPECT_GE(vertex.conjugate_time, 1 - 1e-6);  // shortest paths have none before their end
+    if (vertex.cut_time == 1) ++seam;
+    EXPECT_EQ(vertex.cut_time == 1, std::string(vertex.label) == "maxwell");
+  }
+  EXPECT_GT(seam, 10);
+  constexpr std::size_t kSearched = 20;
+  for (std::size_t k = 0; k < kSearched; ++k) {
+    const FrontVertex& vertex = mesh.vertices[k * (mesh.vertices.size() - 1) / (kSearched - 1)];
+    EXPECT_NEAR(length_to(vertex.q), 1, 1e-8) << k;
+  }
+}
+
+TEST(SectionSphere, IsTheSameForAnyNumberOfThreads) {
+  FrontOptions options = aligned();
+  options.edge = 1;
+  options.threads = 2;
+  const FrontMesh one = wavefront(vehicle(), kOrigin, options);
+  options.threads = 3;
+  const FrontMesh other = wavefront(vehicle(), kOrigin, options);
+  EXPECT_EQ(one.triangles, other.triangles);
+  ASSERT_EQ(one.vertices.size(), other.vertices.size());
+  for (std::size_t i = 0; i < one.vertices.size(); ++i) {
+    EXPECT_EQ(one.vertices[i].q, other.vertices[i].q);
+    EXPECT_EQ(one.vertices[i].p0, other.vertices[i].p0);
+  }
+}
+
+TEST(SectionSphere, SaysWhereItIsOutOfReach) {
+  FrontOptions options = aligned();
+  options.edge = 1;
+  options.section = EndCondition{0, -1, 1.5};  // x = 1.5
+  const FrontMesh mesh = wavefront(vehicle(), kOrigin, options);
+  EXPECT_TRUE(mesh.finished);
+  EXPECT_FALSE(mesh.closed);
+  EXPECT_TRUE(mesh.triangles.empty());
+  EXPECT_THAT(mesh.message, testing::HasSubstr("as near as the length"));
+}
+
+TEST(SectionSphere, EndsWhenInterrupted) {
+  FrontOptions options = aligned();
+  options.progress = [](double) { return false; };
+  EXPECT_FALSE(wavefront(vehicle(), kOrigin, options).finished);
+}
+
+// Straight on is the shortest way to (1, 0, 0, 0), with p = (1, 0, 0, 0).
+TEST(LevelPoint, IsWhereExtremalsArriveInTime) {
+  const Dynamics dynamics = vehicle();
+  const internal::LevelProblem problem{dynamics, kOrigin, 1, Eigen::Vector4d::Ones()};
+  const internal::Simplex side{{0.5, 0, 0, 0}, Eigen::Vector4d(2, 0, 0, 0)};
+  internal::LevelPoint point{{Eigen::Vector4d(0.9, 0.1, -0.1, 0.05)}, Eigen::VectorXd(1)};
+  point.s[0] = 0.3;
+  ASSERT_TRUE(internal::settle(problem, side, point));
+  EXPECT_NEAR(point.s[0], 0.25, kRoundOff);
+  EXPECT_NEAR(point.p[0][0], 1, kRoundOff);
+  EXPECT_NEAR(point.p[0].tail(3).norm(), 0, 1e-7);  // dq/dp is 1e-3 there
+  EXPECT_NEAR(internal::excess_energy(problem, point.p[0]), 0, kRoundOff);
+}
+
+// Forwards first and backwards first to (0, y, 0, 0) are as short, and mirror images: on a face of
+// places about the y axis both extremals meet on that axis.
+TEST(LevelPoint, IsWhereTwoExtremalsAreAsShort) {
+  const Dynamics dynamics = vehicle();
+  GeodesicOptions options;
+  options.count = 2;
+  const GeodesicReport report = find_geodesics({dynamics, kOrigin, {0, 0.1, 0, 0}, 1}, options);
+  ASSERT_EQ(report.geodesics.size(), 2U);
+  const double length = std::sqrt(2 * report.geodesics[0].action);
+  ASSERT_NEAR(std::sqrt(2 * report.geodesics[1].action), length, 1e-8);
+  const internal::LevelProblem problem{dynamics, kOrigin, length, Eigen::Vector4d::Ones()};
+  internal::Simplex face{{-0.02, 0.09, 0, 0}, Eigen::MatrixXd::Zero(4, 2)};
+  face.sides(0, 0) = 0.04;
+  face.sides(1, 1) = 0.02;
+  internal::LevelPoint point;
+  for (const Geodesic& one : report.geodesics) {
+    point.p.emplace_back(internal::vector_of(one.p0) / length);
+  }
+  point.s = Eigen::Vector2d(0.48, 0.52);
+  ASSERT_TRUE(internal::settle(problem, face, point));
+  EXPECT_NEAR(point.s[0], 0.5, 1e-8);
+  EXPECT_NEAR(point.s[1], 0.5, 1e-8);
+  EXPECT_GT((point.p[0] - point.p[1]).norm(), 0.1);
+}
+
+}  // namespace
+}  // namespace carnot::section_sphere_test
