@@ -32,7 +32,7 @@ struct FieldGrid {
     std::vector<int> windings;
   };
   std::vector<double> to;
-  std::vector<Axis> axes;  // the first one slowest
+  std::vector<Axis> axes;             // the first one slowest
   std::vector<Follower> followers{};  // one after the other
 
   [[nodiscard]] long size() const;

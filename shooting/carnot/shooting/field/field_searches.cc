@@ -119,7 +119,8 @@ bool FieldSearches::rests(long i) const {
   std::vector<double> near = grid_.target(i);
   std::vector<double> largest(near.size(), 0.0);
   for (const FieldGrid::Axis& axis : grid_.axes) {
-    largest[axis.coordinate] = std::max(std::abs(axis.values.front()), std::abs(axis.values.back()));
+    largest[axis.coordinate] =
+        std::max(std::abs(axis.values.front()), std::abs(axis.values.back()));
   }
   for (const auto& [coordinate, leader, ratio] : grid_.followers) {
     largest[coordinate] += std::abs(ratio) * largest[leader];

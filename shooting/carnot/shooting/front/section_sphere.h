@@ -6,9 +6,9 @@
 // and a farther place the point at the distance R is a vertex (front/level_point.h). Extremals at
 // the ends of the edge lead to it, and those of the vertices nearby: of all that arrive on the edge
 // the one farthest out is on the sphere, for the distance is the least of all lengths. Where
-// neighbours have different extremals the cut locus lies between them: a face that it crosses gets
-// the vertex at which both are as short, and a tetrahedron the one where three are. So the mesh is
-// closed by construction, and its seam is a line of vertices.
+// neighbours have different extremals the cut locus lies between them, and a face that it crosses
+// gets the vertex at which both are as short. So the mesh is closed by construction, and its seam is
+// a line of vertices.
 #pragma once
 
 #include <array>
