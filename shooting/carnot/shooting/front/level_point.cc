@@ -137,7 +137,7 @@ std::optional<LevelPoint> lead(const LevelProblem& problem,
   LevelPoint point{{}, s};
   for (const NearExtremal& one : extremals) {
     if (one.inverse.size() == 0) return std::nullopt;
-    point.p.push_back(one.p + one.inverse * (there - one.q));
+    point.p.emplace_back(one.p + one.inverse * (there - one.q));
   }
   if (settle(problem, simplex, point)) return point;
   point = {{}, s};

@@ -105,7 +105,7 @@ class SectionSphereMaker {
   }
   void add_side(const Side& side) {
     if (numbers_.emplace(side, static_cast<int>(vertices_.size())).second) {
-      vertices_.push_back({side});
+      vertices_.emplace_back().side = side;
     }
   }
   [[nodiscard]] int vertex_on(GridPlace a, GridPlace b) const {
