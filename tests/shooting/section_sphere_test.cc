@@ -27,7 +27,7 @@ FrontOptions aligned() {
   FrontOptions options;
   options.what = FrontKind::kSphere;
   options.section = EndCondition{2, 3, 0};  // theta = phi
-  options.edge = 0.25;
+  options.edge = 0.5;
   return options;
 }
 
