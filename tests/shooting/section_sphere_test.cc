@@ -4,9 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <string>
 #include <vector>
 
 #include "carnot/shooting/find_geodesics.h"
@@ -14,6 +13,7 @@
 #include "carnot/shooting/rays/ray.h"
 #include "carnot/shooting/wavefront.h"
 #include "shooting/problems.h"
+#include "shooting/same_mesh.h"
 
 namespace carnot::section_sphere_test {
 namespace {
@@ -76,12 +76,7 @@ TEST(SectionSphere, IsTheSameForAnyNumberOfThreads) {
   const FrontMesh one = wavefront(vehicle(), kOrigin, options);
   options.threads = 3;
   const FrontMesh other = wavefront(vehicle(), kOrigin, options);
-  EXPECT_EQ(one.triangles, other.triangles);
-  ASSERT_EQ(one.vertices.size(), other.vertices.size());
-  for (std::size_t i = 0; i < one.vertices.size(); ++i) {
-    EXPECT_EQ(one.vertices[i].q, other.vertices[i].q);
-    EXPECT_EQ(one.vertices[i].p0, other.vertices[i].p0);
-  }
+  test::expect_the_same(one, other);
 }
 
 TEST(SectionSphere, SaysWhereItIsOutOfReach) {

@@ -17,6 +17,7 @@
 #include "carnot/load_scene.h"
 #include "carnot/shooting/cut_time.h"
 #include "shooting/problems.h"
+#include "shooting/same_mesh.h"
 
 namespace carnot::wavefront_test {
 namespace {
@@ -441,12 +442,7 @@ TEST(Wavefront, IsTheSameForAnyNumberOfThreads) {
     const FrontMesh one = wavefront(heisenberg(), {0, 0, 0}, options);
     options.threads = 3;
     const FrontMesh three = wavefront(heisenberg(), {0, 0, 0}, options);
-    EXPECT_EQ(one.triangles, three.triangles);
-    ASSERT_EQ(one.vertices.size(), three.vertices.size());
-    for (std::size_t i = 0; i < one.vertices.size(); ++i) {
-      EXPECT_EQ(one.vertices[i].q, three.vertices[i].q);
-      EXPECT_EQ(one.vertices[i].p0, three.vertices[i].p0);
-    }
+    test::expect_the_same(one, three);
   }
 }
 

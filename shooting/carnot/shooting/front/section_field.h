@@ -17,7 +17,7 @@
 
 namespace carnot::internal {
 
-using GridPlace = long;  // of a grid
+using GridPlace = long;  // its number on a grid
 
 struct SectionOptions {
   EndCondition condition;

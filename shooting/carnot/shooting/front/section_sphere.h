@@ -7,8 +7,8 @@
 // the ends of the edge lead to it, and those of the vertices nearby: of all that arrive on the edge
 // the one farthest out is on the sphere, for the distance is the least of all lengths. Where
 // neighbours have different extremals the cut locus lies between them, and a face that it crosses
-// gets the vertex at which both are as short. So the mesh is closed by construction, and its seam is
-// a line of vertices.
+// gets the vertex at which both are as short. So the mesh is closed by construction, and its seam
+// is a line of vertices.
 #pragma once
 
 #include <array>
