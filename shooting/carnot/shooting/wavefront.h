@@ -20,100 +20,17 @@
 // surface is left, or a condition on the ends of a front or a sphere leaves one.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <limits>
-#include <optional>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "carnot/dynamics.h"
-#include "carnot/shooting/front/end_condition.h"
+#include "carnot/shooting/front/front_mesh.h"
 
 namespace carnot {
-
-// What is drawn of the extremals from one place: their ends, those of the shortest paths, their
-// first conjugate points, or where they stop being shortest paths.
-enum class FrontKind { kFront, kSphere, kCaustic, kCut };
-
-struct FrontOptions {
-  FrontKind what = FrontKind::kFront;
-  double length = 1;                            // R
-  std::vector<std::pair<int, double>> fixed{};  // momenta p_j(0)
-  // What holds at all ends: of a front whose momenta are a circle times a plane, or of a sphere in
-  // four coordinates, which is then the places of the section at the distance R. Angles that differ
-  // by whole turns agree on a front, and do not on a sphere. Cut times are those on the seam.
-  std::optional<EndCondition> section{};
-  int order = 1;       // of a caustic: the k-th conjugate points, with multiplicity
-  bool cusps = false;  // cusp lines and umbilics of a caustic
-  // The three coordinates that are seen. Empty: the first ones, but for the one that a section
-  // tells.
-  std::vector<int> project{};
-  // The longest edge and, in radians, the largest angle between neighbouring triangles, in
-  // coordinates that are 1 wide; of curves a quarter of both. Edges are not cut for an angle below
-  // an eighth of the longest.
-  double edge = 0.1;
-  double angle = 0.35;
-  int most = 100000;   // vertices
-  double bound = 0;    // of the coordinates along the line or in the plane; 0: chosen
-  bool times = false;  // cut and conjugate times at the vertices of a front, too
-  bool mod_angles = true;
-  std::vector<double> signs{};  // under which places are one, as in cut_time.h
-  std::uint64_t seed = 0;
-  int threads = 0;    // 0: all cores
-  Progress progress;  // returns false to stop
-};
-
-// NaN where a time was not asked for, infinite where there is none up to 2 R.
-struct FrontVertex {
-  std::vector<double> q;
-  std::vector<double> p0;  // of unit speed
-  double cut_time = std::numeric_limits<double>::quiet_NaN();
-  double conjugate_time = std::numeric_limits<double>::quiet_NaN();
-  // front, sphere, caustic or cut; on a seam: maxwell or conjugate; of singular points of a
-  // caustic: cusp, swallowtail, hyperbolic umbilic or elliptic umbilic; of the section of a sphere
-  // where no extremal was found: unknown
-  const char* label = "";
-};
-
-// Where a caustic has a sharp edge, point after point. It may end at umbilics, where it goes over
-// to the next sheet, that of another order: these are the ends of `points`, and here are their
-// places in FrontMesh::umbilics; -1 where it ends elsewhere.
-struct CuspEdge {
-  std::vector<FrontVertex> points;
-  bool closed = false;
-  int first_umbilic = -1;
-  int last_umbilic = -1;
-};
-
-struct FrontMesh {
-  bool finished = false;  // false: stopped
-  std::string message;    // what the mesh leaves out
-  double length = 0;
-  std::vector<FrontVertex> vertices;
-  std::vector<std::array<int, 3>> triangles;
-  std::vector<std::array<int, 2>> segments;  // with two coordinates, instead of triangles
-  std::vector<CuspEdge> cusps;               // where they are asked for
-  std::vector<FrontVertex> umbilics;         // where two sheets of a caustic meet
-  std::vector<FrontVertex> swallowtails;     // where a cusp line has a cusp; good to 1e-6
-  // Whether each edge is in two triangles (each vertex in two segments), and then the Euler
-  // characteristic and the area or the volume inside: with two or three coordinates, and of the
-  // section of a sphere in those that are left.
-  bool closed = false;
-  int euler = 0;
-  double volume = std::numeric_limits<double>::quiet_NaN();
-  long searches = 0;
-  double elapsed_seconds = 0;
-};
 
 // At `from`, of length n. Throws std::invalid_argument on bad input.
 FrontMesh wavefront(const Dynamics& dynamics,
                     const std::vector<double>& from,
                     const FrontOptions& options);
-
-// The coordinates that are seen of a mesh: two or three.
-std::vector<int> seen_coordinates(const Dynamics& dynamics, const FrontOptions& options);
 
 // Throws what wavefront() would throw.
 void check_wavefront(const Dynamics& dynamics,

@@ -1,0 +1,84 @@
+#include "carnot/shooting/front/section_mesh.h"
+
+#include <cmath>
+#include <utility>
+
+#include "carnot/numerics/parallel.h"
+#include "carnot/shooting/front/omissions.h"
+#include "carnot/shooting/front/section_sphere.h"
+#include "carnot/shooting/front/seam.h"
+#include "carnot/shooting/problem/turn_rates.h"
+#include "carnot/shooting/rays/conjugate_time.h"
+#include "carnot/shooting/rays/ray.h"
+
+namespace carnot::internal {
+namespace {
+
+// Whether places may be as near whose angles agree but for whole turns.
+bool may_turn(const Dynamics& dynamics,
+              const std::vector<double>& from,
+              const EndCondition& condition,
+              double length) {
+  const double period = dynamics.info.configuration[condition.coordinate].period;
+  if (period == 0) return false;
+  const std::vector<double> rates = turn_rates({dynamics, from, from, length});
+  double rate = rates[condition.coordinate];
+  if (condition.equal >= 0) rate += rates[condition.equal];
+  return !(rate * length < period - std::abs(condition.value));
+}
+
+}  // namespace
+
+void make_section_mesh(const Dynamics& dynamics,
+                       const std::vector<double>& from,
+                       const FrontOptions& options,
+                       FrontMesh& mesh) {
+  constexpr double kHorizon = 2;  // lengths, that conjugate times are followed to
+  const SectionOptions how{*options.section,
+                           options.length,
+                           options.edge,
+                           options.seed,
+                           options.threads,
+                           options.progress};
+  SectionSphere sphere = section_sphere(dynamics, from, how);
+  mesh.finished = sphere.finished;
+  mesh.length = options.length;
+  mesh.searches = sphere.searches;
+  if (!mesh.finished) return;
+  for (SphereVertex& one : sphere.vertices) {
+    FrontVertex vertex{std::move(one.q), std::move(one.p0)};
+    if (one.on_seam) vertex.cut_time = options.length;
+    const bool known = std::isfinite(vertex.p0[0]);
+    vertex.label = one.on_seam ? "maxwell" : known ? "sphere" : "unknown";
+    mesh.vertices.push_back(std::move(vertex));
+  }
+  parallel_for(static_cast<int>(mesh.vertices.size()), thread_count(options.threads), [&](int i) {
+    FrontVertex& vertex = mesh.vertices[i];
+    if (std::isnan(vertex.p0[0])) return;
+    vertex.conjugate_time =
+        conjugate_time(Ray(dynamics, from, vertex.p0), kHorizon * options.length);
+  });
+  mesh.triangles = std::move(sphere.triangles);
+  const Topology topology = topology_of({{}, mesh.triangles, {}});
+  mesh.closed = topology.closed && !mesh.triangles.empty();
+  mesh.euler = topology.euler;
+  if (mesh.closed) mesh.volume = sphere.volume;
+  Omissions omissions;
+  if (mesh.triangles.empty()) {
+    omissions.add() << "no place of the section is as near as the length";
+  }
+  if (sphere.unknown > 0) {
+    omissions.add() << "the distances of " << sphere.unknown
+                    << " places of the grid are not known, and taken for farther than the length";
+  }
+  if (sphere.rough > 0) {
+    omissions.add() << "no extremals were found to " << sphere.rough
+                    << " vertices, which are between two places of the grid";
+  }
+  if (may_turn(dynamics, from, *options.section, options.length)) {
+    omissions.add() << "places whose angles agree but for whole turns are left out";
+  }
+  mesh.message = omissions.text();
+}
+
+}  // namespace carnot::internal
