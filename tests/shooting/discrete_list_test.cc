@@ -101,5 +101,14 @@ TEST_F(DiscreteListTest, GivesUp) {
   EXPECT_EQ(list[0].fate, Fate::kPending);
 }
 
+TEST_F(DiscreteListTest, GivenUpOnesOfTheGridThatSawMoreOfThemCount) {
+  list.add(wiggle(0.5));
+  for (const double size : {0.5, 0.6}) list.add(wiggle(size, 64));
+  EXPECT_EQ(list.give_up({0, 1, 2}), 3);
+  EXPECT_THAT(list.hits_given_up(), testing::ElementsAre(1, 1));
+  list[0].hits = 3;
+  EXPECT_THAT(list.hits_given_up(), testing::ElementsAre(3));
+}
+
 }  // namespace
 }  // namespace carnot::internal::discrete_list_test

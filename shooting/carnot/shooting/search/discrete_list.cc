@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <numeric>
+#include <utility>
 
 namespace carnot::internal {
 namespace {
@@ -81,11 +84,18 @@ int DiscreteList::give_up(const std::vector<std::size_t>& pending) {
 }
 
 std::vector<int> DiscreteList::hits_given_up() const {
-  std::vector<int> hits;
+  std::map<int, std::vector<int>> hits;  // by intervals
   for (const DiscreteExtremal& known : list_) {
-    if (known.fate == Fate::kGivenUp) hits.push_back(known.hits);
+    if (known.fate == Fate::kGivenUp) hits[known.path.intervals].push_back(known.hits);
   }
-  return hits;
+  std::vector<int> most;
+  for (auto& [intervals, of_grid] : hits) {
+    const auto total = [](const std::vector<int>& x) {
+      return std::accumulate(x.begin(), x.end(), 0);
+    };
+    if (total(of_grid) > total(most)) most = std::move(of_grid);
+  }
+  return most;
 }
 
 const Path* DiscreteList::least() const {

@@ -50,7 +50,8 @@ class DiscreteList {
   // Gives these up. Returns how often they were seen.
   int give_up(const std::vector<std::size_t>& pending);
 
-  // How often each of those given up was seen.
+  // How often each of those given up was seen: of the grid where that was most often, for another
+  // grid shows the same ones again.
   [[nodiscard]] std::vector<int> hits_given_up() const;
   // The path of least action; null where there is none.
   [[nodiscard]] const Path* least() const;

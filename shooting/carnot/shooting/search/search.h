@@ -73,12 +73,8 @@ class Search {
   // Whether momenta take turns with starts of drift: while these found nothing.
   [[nodiscard]] bool turn_of_momenta() const;
   void relax_round(int count);
-  // The grid of the next round. A path that turns within an interval steps over the end of the
-  // chart beside it. So where most starts are blocked there, and what was found is nothing or no
-  // minimum, two finer grids take turns. Measured: the least action of a bicycle of length 2 to (0,
-  // 1, 0, 0) turns within 0.03 of the time, 0.04 rad before the end; of 882 starts on 32 intervals
-  // none finds it, on 64 and on 128 some do.
-  [[nodiscard]] int intervals_beside_chart_end() const;
+  // The grid of the next round.
+  [[nodiscard]] int intervals_of_round() const;
   // The same where the scene has no transcription of its own.
   void drift_round(int count);
   // The same from momenta, where forces keep the path on a manifold.
@@ -141,8 +137,12 @@ class Search {
   double least_residual_ = std::numeric_limits<double>::infinity();
   bool seeks_abnormal_;
   double least_relaxed_ = std::numeric_limits<double>::infinity();
-  int stiffness_ = 0;      // how often most starts of a round had to raise the penalty
-  int intervals_ = 32;     // of the grid that paths are relaxed on
+  int stiffness_ = 0;  // how often most starts of a round had to raise the penalty
+  // Of the coarsest grid that paths are relaxed on. Medians of a search on 16 intervals over those
+  // on 32: 0.55 to 0.65 on the targets of stopping_policy.cc, whose answers are the same but for
+  // those that need hundreds of starts. On 8 intervals 11 of 60 targets of falling-cat are missed
+  // instead of 4.
+  int intervals_ = 16;
   bool descends_ = false;  // the best extremal so far is no minimum
   // The least action that there was when momenta were tried below it.
   double shot_below_ = std::numeric_limits<double>::infinity();

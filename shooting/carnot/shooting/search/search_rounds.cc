@@ -55,16 +55,26 @@ std::optional<LeastRelaxed> least_of(const BoundaryValueProblem& problem,
 
 }  // namespace
 
-int Search::intervals_beside_chart_end() const {
-  constexpr int kTurn = 8;  // starts
+int Search::intervals_of_round() const {
+  constexpr int kTurn = 8;     // starts
+  constexpr int kCoarse = 16;  // starts
+  const int turn = tally_.drawn / kTurn;
+  // Most searches end on the coarsest grid. Those that go on take turns between it and the next
+  // one, for each has extremals that the other lacks. On the targets of stopping_policy.cc, with up
+  // to 480 starts, 13 are missed and 3 not solved; on the coarsest grid alone 23 and 3, in 0.76 of
+  // the time.
+  int halvings = tally_.drawn < kCoarse ? 0 : turn % 2;
+  // A path that turns within an interval steps over the end of the chart beside it. So where most
+  // starts are blocked there, and what was found is nothing or no minimum, two finer grids take
+  // turns. Measured: the least action of a bicycle of length 2 to (0, 1, 0, 0) turns within 0.03 of
+  // the time, 0.04 rad before the end; of 882 starts on 32 intervals none finds it, on 64 some do.
   const bool mostly_blocked = 2 * tally_.blocked > tally_.starts;
-  if (!mostly_blocked || !(extremals_.empty() || descends_)) return intervals_;
-  const int halvings = 1 + tally_.drawn / kTurn % 2;
+  if (mostly_blocked && (extremals_.empty() || descends_)) halvings = 1 + turn % 2;
   return std::max(intervals_, std::min(intervals_ << halvings, kMaxIntervals));
 }
 
 void Search::relax_round(int count) {
-  const RelaxedStartOptions options{options_.seed, intervals_beside_chart_end(), stiffness_};
+  const RelaxedStartOptions options{options_.seed, intervals_of_round(), stiffness_};
   std::vector<RelaxedStart> starts(count);
   parallel_for(count, threads_, [&](int i) {
     if (deadline_.passed()) return;

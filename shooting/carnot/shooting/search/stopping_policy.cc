@@ -11,7 +11,10 @@ namespace {
 // trailer1, trailer2 and engel, 200 of falling-cat, 200 of vehicle that are 1e-4 to 0.1 away, and
 // 60 with drift. Missed is what another run found less action for, of 23 runs, one of them with 400
 // starts for each target; times are relative. As they are, 7 of falling-cat are missed, and no
-// other.
+// other. That was on grids of 32 intervals, with at most 240 starts. The limit was measured on the
+// grids of today (search.h), on 2,700 targets from the origin: 1,350 of vehicle, trailer1 and
+// unicycle, 300 of heisenberg-group, 400 of falling-cat, 190 of trailer2, 150 of engel and of
+// martinet, 100 of plate-ball-quaternion and 60 of bicycle; 490 of all with positions up to 15.
 
 // Starts between two looks at the list. Where one geodesic is wanted, rounds between 8 and 16
 // starts are half as long: the looks are after 8, 12, 16, 24, 32, ... starts.
@@ -27,9 +30,11 @@ constexpr int kMinNear = 24;
 // The least number where most starts agree. 12 starts miss with 3 % what one in four leads to. With
 // 16 all take 1.05 of the time, and nothing changes.
 constexpr int kMinEasy = 12;
-// The limit. 240 starts miss with 1 % what one in 52 leads to. With 120, 10 targets are missed, in
-// 0.72 of the time, with 480 2 targets, in 1.54; all of them of falling-cat.
-constexpr int kMaxStarts = 240;
+// The limit. 480 starts miss with 1 % what one in 104 leads to. 12 targets of falling-cat and one
+// of trailer2 are missed, and 3 of bicycle are not solved. With 240, 20 of falling-cat, 3 of
+// trailer2 and one each of trailer1 and vehicle are missed and 7 of bicycle are not solved, in 0.59
+// of the time.
+constexpr int kMaxStarts = 480;
 // So many times the limit of starts do not count where they are blocked: at most three times the
 // limit are drawn. Of 60 random targets of bicycle 44, 50 and 51 are reached with 0, 2 and 4, in
 // 0.40, 1 and 1.41 of the time.
