@@ -88,6 +88,8 @@ TEST(StoppingPolicy, GoesOnWhereSomethingWasMissedByChaosEstimate) {
   StoppingPolicy policy(options_for(1), true, false);
   EXPECT_TRUE(policy.ends({24, 24, 0, 24}, {8, 1, 0.5}));
   EXPECT_FALSE(policy.ends({24, 24, 0, 24}, {8, 1, 1}));
+  EXPECT_FALSE(policy.ends({64, 64, 0, 64}, {19, 1, 50}));
+  EXPECT_TRUE(policy.ends({64, 64, 0, 64}, {20, 1, 50})) << "whatever it says";
   // Starts of drift say too little for an estimate.
   policy.plan_for(8, 40);
   EXPECT_TRUE(policy.ends({24, 24, 0, 24}, {8, 1, 1}));
