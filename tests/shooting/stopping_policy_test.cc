@@ -29,6 +29,13 @@ TEST(StoppingPolicy, BlockedStartsAreMadeUpFor) {
   EXPECT_EQ(policy.left({0, 0, 100 * limit, 0}), 3 * limit) << "up to twice the limit";
 }
 
+TEST(StoppingPolicy, NearTargetsGetFewerStarts) {
+  const StoppingPolicy far(options_for(1), true, false);
+  const StoppingPolicy near(options_for(1), true, true);
+  EXPECT_LT(near.left({}), far.left({}));
+  EXPECT_EQ(StoppingPolicy(options_for(1, false, 300), true, true).left({}), 300);
+}
+
 TEST(StoppingPolicy, RoundsAreShortWhereTheSearchMayEnd) {
   const StoppingPolicy one(options_for(1), true, false);
   const StoppingPolicy more(options_for(4), true, false);
