@@ -5,8 +5,8 @@
 
 #include "carnot/numerics/parallel.h"
 #include "carnot/shooting/front/omissions.h"
-#include "carnot/shooting/front/section_sphere.h"
 #include "carnot/shooting/front/seam.h"
+#include "carnot/shooting/front/section_sphere.h"
 #include "carnot/shooting/problem/turn_rates.h"
 #include "carnot/shooting/rays/conjugate_time.h"
 #include "carnot/shooting/rays/ray.h"
