@@ -76,12 +76,9 @@ FrontMesh wavefront(const Dynamics& dynamics,
                     const FrontOptions& options) {
   const auto began = std::chrono::steady_clock::now();
   check_wavefront(dynamics, from, options);
-  FrontMesh mesh;
-  if (options.section && options.what == FrontKind::kSphere) {
-    make_section_mesh(dynamics, from, options, mesh);
-  } else {
-    make_front(dynamics, from, options, mesh);
-  }
+  const bool of_section = options.section && options.what == FrontKind::kSphere;
+  FrontMesh mesh =
+      of_section ? make_section_mesh(dynamics, from, options) : make_front(dynamics, from, options);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - began;
   mesh.elapsed_seconds = elapsed.count();
   return mesh;

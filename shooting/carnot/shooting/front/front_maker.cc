@@ -62,7 +62,8 @@ class FrontMaker {
         dynamics_, from_, momenta_, *options.section, options.length, options.mod_angles);
   }
 
-  void run(FrontMesh& mesh) {
+  FrontMesh run() {
+    FrontMesh mesh;
     mesh.length = options_.length;
     if (section_) {
       begin_section();
@@ -73,6 +74,7 @@ class FrontMaker {
     if (mesh.finished) deliver(mesh);
     mesh.searches = cuts_.searches();
     mesh.message = left_out();
+    return mesh;
   }
 
  private:
@@ -590,11 +592,10 @@ class FrontMaker {
 
 }  // namespace
 
-void make_front(const Dynamics& dynamics,
-                const std::vector<double>& from,
-                const FrontOptions& options,
-                FrontMesh& mesh) {
-  FrontMaker(dynamics, from, options).run(mesh);
+FrontMesh make_front(const Dynamics& dynamics,
+                     const std::vector<double>& from,
+                     const FrontOptions& options) {
+  return FrontMaker(dynamics, from, options).run();
 }
 
 }  // namespace carnot::internal

@@ -8,10 +8,9 @@
 
 namespace carnot::internal {
 
-// Fills all of `mesh` but the seconds that it took. The options are those of check_wavefront().
-void make_front(const Dynamics& dynamics,
-                const std::vector<double>& from,
-                const FrontOptions& options,
-                FrontMesh& mesh);
+// All but the seconds that it took. The options are those of check_wavefront().
+FrontMesh make_front(const Dynamics& dynamics,
+                     const std::vector<double>& from,
+                     const FrontOptions& options);
 
 }  // namespace carnot::internal

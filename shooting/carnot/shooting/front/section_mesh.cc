@@ -29,10 +29,9 @@ bool may_turn(const Dynamics& dynamics,
 
 }  // namespace
 
-void make_section_mesh(const Dynamics& dynamics,
-                       const std::vector<double>& from,
-                       const FrontOptions& options,
-                       FrontMesh& mesh) {
+FrontMesh make_section_mesh(const Dynamics& dynamics,
+                            const std::vector<double>& from,
+                            const FrontOptions& options) {
   constexpr double kHorizon = 2;  // lengths, that conjugate times are followed to
   const SectionOptions how{*options.section,
                            options.length,
@@ -41,10 +40,11 @@ void make_section_mesh(const Dynamics& dynamics,
                            options.threads,
                            options.progress};
   SectionSphere sphere = section_sphere(dynamics, from, how);
+  FrontMesh mesh;
   mesh.finished = sphere.finished;
   mesh.length = options.length;
   mesh.searches = sphere.searches;
-  if (!mesh.finished) return;
+  if (!mesh.finished) return mesh;
   for (SphereVertex& one : sphere.vertices) {
     FrontVertex vertex{std::move(one.q), std::move(one.p0)};
     if (one.on_seam) vertex.cut_time = options.length;
@@ -79,6 +79,7 @@ void make_section_mesh(const Dynamics& dynamics,
     omissions.add() << "places whose angles agree but for whole turns are left out";
   }
   mesh.message = omissions.text();
+  return mesh;
 }
 
 }  // namespace carnot::internal

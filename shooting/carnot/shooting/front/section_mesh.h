@@ -8,11 +8,10 @@
 
 namespace carnot::internal {
 
-// Fills all of `mesh` but the seconds that it took. The options are those of check_wavefront(), and
-// have a section. Cost: that of section_sphere(), and one conjugate time for each vertex.
-void make_section_mesh(const Dynamics& dynamics,
-                       const std::vector<double>& from,
-                       const FrontOptions& options,
-                       FrontMesh& mesh);
+// All but the seconds that it took. The options are those of check_wavefront(), and have a section.
+// Cost: that of section_sphere(), and one conjugate time for each vertex.
+FrontMesh make_section_mesh(const Dynamics& dynamics,
+                            const std::vector<double>& from,
+                            const FrontOptions& options);
 
 }  // namespace carnot::internal
