@@ -36,8 +36,9 @@ constexpr int kMinEasy = 12;
 // trailer2 and one each of trailer1 and vehicle are missed and 7 of bicycle are not solved, in 0.59
 // of the time.
 constexpr int kMaxStarts = 480;
-// The same where a target is near. Of near targets only those reach it whose extremals round-off
-// parts into many, and each start is dear there: a vehicle to (0, 1e-10, 0, 0) takes 74 s with 480.
+// The same where a target is near. Only targets so near that round-off parts their extremals into
+// many get that far, and a start takes long there: a vehicle to (0, 1e-10, 0, 0) takes 74 s with
+// 480.
 constexpr int kMaxNear = 240;
 // So many times the limit of starts do not count where they are blocked: at most three times the
 // limit are drawn. Of 60 random targets of bicycle 44, 50 and 51 are reached with 0, 2 and 4, in
@@ -50,8 +51,8 @@ constexpr int kSweeps = 24;
 // with 5, 6 targets, in 1.01.
 constexpr int kEnoughHits = 3;
 // So many hits are enough whatever Chao's estimate says, which counts extremals of much more
-// action, too. What a third as many starts lead to is missed with 0.1 %. With 10, four more targets
-// of falling-cat and one of vehicle are missed, in 0.83 of the time; without, one less of
+// action, too. What a third as many starts lead to is missed with 0.1 %. With 10, three more
+// targets of falling-cat and one of vehicle are missed, in 0.83 of the time; without, one less of
 // falling-cat, in 1.41.
 constexpr int kSureHits = 20;
 // What is enough where there is drift. Its starts find minima only, and the search has to know that
