@@ -196,9 +196,9 @@ class FrontMaker {
         }
         times_[i] = point.t;
         if (!(point.t <= kFarthest * options_.length)) return;
-        const std::vector<double> z =
-            point.z.empty() ? ray.at(point.t, ray.enough_steps(point.t)) : point.z;
-        if (!z.empty()) std::copy_n(z.begin(), n_, ends_.begin() + static_cast<long>(i) * n_);
+        if (point.q.empty()) point.q = ray.at(point.t, ray.enough_steps(point.t));
+        if (point.q.empty()) return;
+        std::copy_n(point.q.begin(), n_, ends_.begin() + static_cast<long>(i) * n_);
       });
     }
     if (!scale_.is_measured()) scale_.measure(ends_, n_);
@@ -325,7 +325,8 @@ class FrontMaker {
 
   // Finds the place on an edge where the time is the length and, of a sphere, the value there.
   CutValue locate(Between& place) {
-    constexpr double kEnough = 1e-13;
+    constexpr double kEnough = 1e-13;    // of the edge
+    constexpr double kRoundOff = 1e-13;  // of the length
     const double wanted = 1 / options_.length;
     const auto time = [&](int i) { return needs_cuts() ? cuts_[i].t : times_[i]; };
     std::map<double, CutRay> known;
@@ -336,7 +337,8 @@ class FrontMaker {
       const double t = needs_cuts()
                            ? cut_time_at(part, p, known)
                            : conjugate_time(Ray(dynamics_, from_, p), horizon_, options_.order);
-      return std::optional(1 / t - wanted);
+      const double rate = 1 / t - wanted;
+      return std::optional(std::abs(rate) <= kRoundOff * wanted ? 0 : rate);
     };
     constexpr double kMet = 1e-6;  // relative: what is further off is a jump
     constexpr int kHalvings = 3;

@@ -28,7 +28,7 @@ struct Node {
   SmallMatrix p;
 };
 
-// D F D with a diagonal D, at the start or the end of a step.
+// D F D with a diagonal D.
 struct Form {
   SmallMatrix f;
   int negative = 0;  // so many of its eigenvalues
@@ -44,11 +44,11 @@ Form form_of(const SmallMatrix& f, const Eigen::VectorXd& scale) {
 // How many eigenvalues are not told from zero.
 int zeros_of(const Form& form) { return count_below(form.f, kRounding) - form.negative; }
 
-// F is P'X at the start of a step.
 struct Step {
-  Form before;
-  Form after;
-  SmallMatrix lift;  // A^-T P D, and the rate of D F D is lift' H_pp lift
+  SmallMatrix before;  // F at its start, P'X,
+  SmallMatrix after;   // and at its end
+  SmallMatrix lift;    // A^-T P, and the rate of F is lift' H_pp lift
+  Eigen::VectorXd scale;
 };
 
 // Makes the sizes of the terms of which the diagonal of F is the sum one. Directions that take many
@@ -82,15 +82,16 @@ bool stayed_regular(const SmallMatrix& a) {
 
 enum class Advance { kDone, kTooLong, kFailed };
 
+std::span<double> entries(RowMajor& m) { return {m.data(), static_cast<std::size_t>(m.size())}; }
+
 // One step of the method, and F over it.
 Advance advance(const Dynamics& dynamics, const Node& from, double t, Node& to, Step& step) {
   const int n = dynamics.dof;
   RowMajor m(2 * n, 2 * n);
   to.t = t;
   to.z = from.z;
-  const std::span<double> rows(m.data(), static_cast<std::size_t>(m.size()));
   const StepPlan plan = StepPlan::equal(from.t, t - from.t, 1);
-  if (!dynamics.tangent_flow(plan, to.z, rows).completed()) return Advance::kFailed;
+  if (!dynamics.tangent_flow(plan, to.z, entries(m)).completed()) return Advance::kFailed;
   const SmallMatrix a = m.topLeftCorner(n, n);
   to.x = a.lazyProduct(from.x) + m.topRightCorner(n, n).lazyProduct(from.p);
   to.p =
@@ -99,11 +100,12 @@ Advance advance(const Dynamics& dynamics, const Node& from, double t, Node& to, 
   if (!stayed_regular(a)) return Advance::kTooLong;
   const SmallMatrix inverse = small_lu_inverse(a);
   const SmallMatrix grown = inverse.lazyProduct(m.topRightCorner(n, n));
-  const Eigen::VectorXd scale = scale_of(from.x, grown, from.p);
   const SmallMatrix back = inverse.lazyProduct(to.x);
-  step.before = form_of(from.p.transpose().lazyProduct(from.x), scale);
-  step.after = form_of(from.p.transpose().lazyProduct(back), scale);
-  step.lift = inverse.transpose().lazyProduct(from.p) * scale.asDiagonal();
+  const SmallMatrix transposed = from.p.transpose();
+  step.before = transposed.lazyProduct(from.x);
+  step.after = transposed.lazyProduct(back);
+  step.lift = inverse.transpose().lazyProduct(from.p);
+  step.scale = scale_of(from.x, grown, from.p);
   return Advance::kDone;
 }
 
@@ -113,8 +115,7 @@ SmallMatrix moving_momenta(const Dynamics& dynamics, const std::vector<double>& 
   const int n = dynamics.dof;
   if (dynamics.forced == 0) return SmallMatrix::Identity(n, n);
   RowMajor projector(2 * n, 2 * n);
-  const std::span<double> rows(projector.data(), static_cast<std::size_t>(projector.size()));
-  if (!dynamics.tangent_projector(0, z, rows)) return SmallMatrix::Identity(n, n);
+  if (!dynamics.tangent_projector(0, z, entries(projector))) return SmallMatrix::Identity(n, n);
   return right_singular(projector.leftCols(n)).vectors.leftCols(n - dynamics.forced);
 }
 
@@ -139,27 +140,31 @@ void orthonormalize(Node& node) {
 
 class Count {
  public:
-  Count(const Ray& ray, int order) : dynamics_(ray.dynamics()), left_(order) {
+  Count(const Ray& ray, int order) : dynamics_(&ray.dynamics()), left_(order) {
     node_.z = ray.start();
-    node_.p = moving_momenta(dynamics_, node_.z);
-    node_.x = SmallMatrix::Zero(dynamics_.dof, node_.p.cols());
+    node_.p = moving_momenta(*dynamics_, node_.z);
+    node_.x = SmallMatrix::Zero(dynamics_->dof, node_.p.cols());
     size_ = size_of(node_);
+    end_ = {0, node_.z};
   }
 
   // Goes on to t, or to the time that is looked for: then that is `found`. False where it fails.
   bool go_to(double t, int halvings = kHalvings) {
     Node next;
     Step step;
-    const Advance result = advance(dynamics_, node_, t, next, step);
+    const Advance result = advance(*dynamics_, node_, t, next, step);
     if (result == Advance::kFailed) return false;
     if (result == Advance::kTooLong) {
       if (halvings == 0) return false;
       if (!go_to(0.5 * (node_.t + t), halvings - 1)) return false;
       return found || go_to(t, halvings - 1);
     }
-    const int passed = std::max(0, step.before.negative - step.after.negative);
+    end_ = {t, next.z};
+    const Form before = form_of(step.before, step.scale);
+    const Form after = form_of(step.after, step.scale);
+    const int passed = std::max(0, before.negative - after.negative);
     if (passed >= left_) {
-      locate(step, std::move(next));
+      locate(step, before, after, std::move(next));
       return true;
     }
     left_ -= passed;
@@ -168,8 +173,13 @@ class Count {
     return true;
   }
 
-  // The phase point that has been reached.
-  [[nodiscard]] const std::vector<double>& z() const { return node_.z; }
+  [[nodiscard]] const Dynamics& dynamics() const { return *dynamics_; }
+  // Where the last step ended, also if the time was found within it.
+  struct End {
+    double t = 0;
+    std::vector<double> z;
+  };
+  [[nodiscard]] const End& end() const { return end_; }
 
   std::optional<ConjugatePoint> found;
 
@@ -182,47 +192,55 @@ class Count {
     orthonormalize(node_);
     size_ = size_of(node_);
   }
-  // The zero of the eigenvalue that has `left_` - 1 negative ones above it, before the node `end`.
-  // What stays at zero is below it as soon as it is positive.
-  void locate(const Step& whole, Node end) {
-    constexpr double kNear = 1e-8;                       // relative
-    const int negative = whole.before.negative - left_;  // those below it
-    const int zero = std::min(zeros_of(whole.before), zeros_of(whole.after));
-    const auto index = [&](const Form& form) {
-      return form.negative > negative ? negative : negative + zero;
+  // The zero of the eigenvalue that has `left_` - 1 negative ones above it, in a step to the node
+  // `end`, with D of the whole step. What stays at zero is below it as soon as it is positive.
+  void locate(const Step& whole, const Form& before, const Form& after, Node end) {
+    // Relative. What is left then is a step of Newton's method, and its square is round-off.
+    constexpr double kNear = 1e-8;
+    const int negative = before.negative - left_;  // those below it
+    const int zero = std::min(zeros_of(before), zeros_of(after));
+    const auto value_of = [&](const Form& form, const SmallMatrix& lift, const Node& at) {
+      const SymmetricEigen eigen = symmetric_eigen(form.f);
+      const int which = form.negative > negative ? negative : negative + zero;
+      const Eigen::VectorXd w = lift * eigen.vectors.col(which).cwiseProduct(whole.scale);
+      return ValueAndSlope{eigen.values[which], rate_along(w, at.z)};
     };
-    const auto value_of = [&](const Form& form) {
-      return symmetric_eigen(form.f).values[index(form)];
-    };
+    const ValueAndSlope at_start = value_of(before, node_.p, node_);
+    const ValueAndSlope at_end = value_of(after, whole.lift, end);
     const double t = end.t;
+    ValueAndSlope at_last = at_end;
     Node last = std::move(end);
     Node middle;
     Step step;
     const auto value_at = [&](double at) -> std::optional<ValueAndSlope> {
-      if (advance(dynamics_, node_, at, middle, step) != Advance::kDone) return std::nullopt;
+      if (advance(*dynamics_, node_, at, middle, step) != Advance::kDone) return std::nullopt;
       std::swap(middle, last);
-      const SymmetricEigen eigen = symmetric_eigen(step.after.f);
-      const int which = index(step.after);
-      const Eigen::VectorXd w = step.lift * eigen.vectors.col(which);
-      return ValueAndSlope{eigen.values[which], rate_along(w, last.z)};
+      at_last = value_of(form_of(step.after, whole.scale), step.lift, last);
+      return at_last;
     };
-    (void)bracketed_newton(
-        node_.t, value_of(whole.before), t, value_of(whole.after), kNear * t, value_at);
-    found = ConjugatePoint{last.t, std::move(last.z)};
+    (void)bracketed_newton(node_.t, at_start, t, at_end, kNear * t, value_at);
+    const double rest = -at_last.value / at_last.slope;
+    const int n = dynamics_->dof;
+    found = ConjugatePoint{last.t, {last.z.begin(), last.z.begin() + n}};
+    if (!(std::abs(rest) <= kNear * t)) return;
+    const Eigen::VectorXd velocity = motion_at(*dynamics_, last.z.data()).velocity;
+    found->t += rest;
+    for (int j = 0; j < n; ++j) found->q[j] += rest * velocity[j];
   }
 
   // Of an eigenvalue, at the phase point z: w' H_pp w, where w is its vector, lifted. H_pp w is the
   // velocity at (q, w), since H is quadratic in p.
   [[nodiscard]] double rate_along(const Eigen::VectorXd& w, const std::vector<double>& z) const {
     std::vector<double> at = z;
-    std::copy(w.begin(), w.end(), at.begin() + dynamics_.dof);
-    return w.dot(motion_at(dynamics_, at.data()).velocity);
+    std::copy(w.begin(), w.end(), at.begin() + dynamics_->dof);
+    return w.dot(motion_at(*dynamics_, at.data()).velocity);
   }
 
-  const Dynamics& dynamics_;
+  const Dynamics* dynamics_;
   int left_;
   Node node_;
   double size_ = 0;  // when its basis was made
+  End end_;
 };
 
 // How many steps over `length` tangents need not to turn by more than some two radians in one.
@@ -235,12 +253,37 @@ double steps_of_tangents(const Dynamics& dynamics, std::vector<double> z, double
   constexpr double kTurn = 1.6;
   const int n = dynamics.dof;
   RowMajor m(2 * n, 2 * n);
-  const std::span<double> rows(m.data(), static_cast<std::size_t>(m.size()));
-  if (!dynamics.tangent_flow(StepPlan::equal(0, kFraction * length, 1), z, rows).completed()) {
+  const StepPlan plan = StepPlan::equal(0, kFraction * length, 1);
+  if (!dynamics.tangent_flow(plan, z, entries(m)).completed()) {
     return std::numeric_limits<double>::quiet_NaN();
   }
   m.diagonal().array() -= 1;
   return spectral_radius(m) / (kFraction * kTurn);
+}
+
+// Goes on from `begin` for a length, or to the time that is looked for, in `steps` steps or in
+// more, as many as are enough; whether they are may be known. False where it fails.
+bool go_along(double begin, double length, bool enough, long& steps, Count& count) {
+  for (;; steps = std::min(steps, kMostSteps)) {
+    Count next = count;
+    const StepPlan plan = StepPlan::equal(begin, length, steps);
+    long done = 0;
+    while (done < steps && !next.found && next.go_to(plan.time(done + 1))) ++done;
+    const bool followed = next.found || done == steps;
+    if (!followed && steps == kMostSteps) return false;
+    if (!followed) {
+      steps *= 2;
+      continue;
+    }
+    const double t = next.end().t - begin;
+    const long wanted =
+        enough ? done : wanted_steps(count.dynamics(), count.end().z, t, done, next.end().z);
+    if (wanted == done || steps == kMostSteps) {
+      count = std::move(next);
+      return true;
+    }
+    steps = std::max(steps + 1, steps * wanted / done);
+  }
 }
 
 }  // namespace
@@ -248,24 +291,23 @@ double steps_of_tangents(const Dynamics& dynamics, std::vector<double> z, double
 ConjugatePoint conjugate_point(const Ray& ray, double horizon, int order) {
   // How many steps are enough is found for stretches that double: most rays are conjugate early.
   constexpr double kFirst = 0.125;
-  constexpr double kMost = 1e5;  // steps of a stretch
+  const ConjugatePoint unknown{std::numeric_limits<double>::quiet_NaN(), {}};
   const Dynamics& dynamics = ray.dynamics();
   Count count(ray, order);
+  const double first = kFirst * horizon;
+  const double least = kFirst * steps_of_tangents(dynamics, count.end().z, horizon);
+  if (!(least < kMostSteps)) return unknown;
+  const long fewest = std::max(1L, static_cast<long>(std::ceil(least)));
+  // A flow alone tells how many are enough at first. Later on that is known but for surprises.
+  long steps = enough_steps(dynamics, count.end().z, first, fewest);
   double begin = 0;
-  const double least = kFirst * steps_of_tangents(dynamics, count.z(), horizon);
-  if (!(least < kMost)) return {std::numeric_limits<double>::quiet_NaN(), {}};
-  double h = kFirst * horizon / std::max(1.0, std::ceil(least));  // was enough before
-  for (double part = kFirst; part <= 1; part *= 2) {
-    const double length = part * horizon - begin;
-    const long fewest = std::max(1L, std::lround(length / h));
-    const long steps = enough_steps(dynamics, count.z(), length, fewest);
-    h = length / static_cast<double>(steps);
-    for (long i = 1; i <= steps; ++i) {
-      const double t = begin + length * static_cast<double>(i) / static_cast<double>(steps);
-      if (!count.go_to(t)) return {std::numeric_limits<double>::quiet_NaN(), {}};
-      if (count.found) return *count.found;
-    }
-    begin = part * horizon;
+  double h = first / static_cast<double>(steps);
+  for (double end = first; end <= horizon; end *= 2) {
+    steps = std::clamp(std::lround((end - begin) / h), 1L, kMostSteps);
+    if (!go_along(begin, end - begin, end == first, steps, count)) return unknown;
+    if (count.found) return *count.found;
+    h = (end - begin) / static_cast<double>(steps);
+    begin = end;
   }
   return {std::numeric_limits<double>::infinity(), {}};
 }

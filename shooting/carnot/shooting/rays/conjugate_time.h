@@ -12,7 +12,7 @@
 // of these times is a simple zero of one eigenvalue, counted from below. A step at which A is not
 // well regular is halved. With M symplectic, A^-1 B changes at the rate A^-1 H_pp A^-T, so the
 // eigenvalue with the unit vector v changes at the rate w'H_pp w, w = A^-T P v, and its zero is
-// found by Newton's method.
+// found by inverse interpolation.
 //
 // Signs are those of D F D, with a diagonal D that makes the terms of F of one size: so dilations
 // and units change nothing. Beside an abnormal extremal one eigenvalue is small like the square of
@@ -26,15 +26,15 @@
 
 namespace carnot::internal {
 
-// A conjugate time, and the phase point (q, p) there. The time is infinite where there is none up
-// to the horizon, and NaN where the flow fails; then there is no point.
+// A conjugate time, and the place there. The time is infinite where there is none up to the
+// horizon, and NaN where the flow fails; then there is no place.
 struct ConjugatePoint {
   double t = 0;
-  std::vector<double> z;
+  std::vector<double> q;
 };
 
 // The one of this order, counted with multiplicity; order 1 is the first. Cost: on the unicycle
-// some 13 steps with their tangents, of which 5 find the zero in the last one.
+// some 13 steps with their tangents, of which 3 find the zero in the last one, and 10 without.
 ConjugatePoint conjugate_point(const Ray& ray, double horizon, int order = 1);
 double conjugate_time(const Ray& ray, double horizon, int order = 1);
 

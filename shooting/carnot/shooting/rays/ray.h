@@ -37,8 +37,19 @@ struct RayEnd {
   Eigen::MatrixXd tangent;  // 2n x n, d(q, p)/dp(0)
 };
 
-// The fewest steps from z over a time t, `fewest` of them or doublings of that, for which halving
-// them changes the end by round-off only.
+// More steps than this no ray is followed with.
+inline constexpr long kMostSteps = 1L << 14;
+
+// How many steps from z over a time t are to be tried next, where `end` is where so many of them
+// lead, and empty where they fail: as many, if these are enough. Half as many have 2^order times
+// the error. So they end elsewhere by as many times the round-off, or nearer, if that is what is
+// left; if not, the difference tells how many are missing. Cost: a flow of half as many steps.
+long wanted_steps(const Dynamics& dynamics,
+                  const std::vector<double>& z,
+                  double t,
+                  long steps,
+                  const std::vector<double>& end);
+// So many steps from z over a time t, `fewest` or more, that what is left is round-off.
 long enough_steps(const Dynamics& dynamics, const std::vector<double>& z, double t, long fewest);
 
 class Ray {
