@@ -109,7 +109,7 @@ void add_front_options(CLI::App& app, FrontCall& options) {
       options.run.destination.plot,
       "FILE",
       "draw surfaces: .png, .svg, .pdf or .gif, which grows with R");
-  app.add_flag("--times", options.times, "cut and conjugate times of a front, too");
+  app.add_flag("--times", options.times, "cut and conjugate times at all vertices, of fronts, too");
   app.add_flag("--cusps", options.cusps, "cusp lines, umbilics and swallowtails of a caustic");
   app.add_flag("--check", options.check, "of a sphere: closed, Euler characteristic, volume");
   app.add_flag("--json", options.run.destination.json, "print one JSON object");

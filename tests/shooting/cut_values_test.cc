@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "carnot/shooting/cut_time.h"
@@ -44,7 +45,7 @@ void add_chain(const std::vector<std::vector<double>>& momenta, CutValues& value
     if (i + 1 < count) neighbours[i].push_back(i + 1);
     all.push_back(i);
   }
-  ASSERT_TRUE(values.add(momenta, neighbours, all));
+  ASSERT_TRUE(values.add(momenta, neighbours, all, 0));
 }
 
 CutValues values_of(const Dynamics& dynamics) {
@@ -69,6 +70,27 @@ TEST(CutValues, AreThoseOfSearches) {
     } else {
       EXPECT_TRUE(std::isinf(values[i].t));
     }
+  }
+}
+
+TEST(CutValues, OfAMeshLeaveOutWhatHasNoNeighbours) {
+  constexpr double kSame = 1e-9;
+  const Dynamics dynamics = vehicle();
+  auto momenta = line(dynamics, {0.6, -3, 2, 0.8}, {0.62, -3.06, 2.04, 0.79}, 3);
+  momenta.insert(momenta.begin() + 1, std::vector<double>(4, std::nan("")));
+  CutValues cuts = values_of(dynamics);
+  const auto values = cuts.of_mesh(momenta, {{2}, {}, {0, 3}, {2}}, 1);
+  ASSERT_TRUE(values);
+  ASSERT_EQ(values->size(), 4U);
+  EXPECT_FALSE((*values)[1].known);
+  EXPECT_TRUE(std::isnan((*values)[1].t));
+  CutTimeOptions search;
+  search.max_time = kHorizon;
+  for (const int i : {0, 2, 3}) {
+    const CutTime cut = cut_time(dynamics, kOrigin, momenta[i], search);
+    const double expected = cut.cut_time.value_or(std::numeric_limits<double>::infinity());
+    EXPECT_TRUE((*values)[i].known);
+    if ((*values)[i].t != expected) EXPECT_NEAR((*values)[i].t, expected, kSame * expected);
   }
 }
 

@@ -189,6 +189,23 @@ std::vector<double> grushin_end(double c, double w, double t) {
   return {c * std::sin(w * t) / w, t / (2 * w) - std::sin(2 * w * t) / (4 * w * w)};
 }
 
+TEST(Wavefront, ACausticHasCutTimesWhereTheyAreAskedFor) {
+  FrontOptions options = coarse(FrontKind::kCaustic, 3);
+  options.edge = 2;
+  const FrontMesh plain = wavefront(unicycle(), {0, 0, 0}, options);
+  options.times = true;
+  const FrontMesh caustic = wavefront(unicycle(), {0, 0, 0}, options);
+  test::expect_the_same(caustic, plain);
+  ASSERT_FALSE(caustic.vertices.empty());
+  for (std::size_t i = 0; i < caustic.vertices.size(); ++i) {
+    const FrontVertex& vertex = caustic.vertices[i];
+    const double expected = se2_cut_time(vertex.p0);
+    EXPECT_TRUE(std::isnan(plain.vertices[i].cut_time));
+    EXPECT_EQ(vertex.conjugate_time, plain.vertices[i].conjugate_time);
+    EXPECT_NEAR(vertex.cut_time, expected, 1e-6 * expected);
+  }
+}
+
 TEST(Wavefront, OfTheGrushinPlaneIsACurve) {
   for (const FrontKind what : {FrontKind::kFront, FrontKind::kCaustic, FrontKind::kSphere}) {
     FrontOptions options = coarse(what, 2);

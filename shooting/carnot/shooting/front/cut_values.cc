@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "carnot/numerics/parallel.h"
@@ -293,7 +294,9 @@ CutValue CutValues::beside(const std::vector<double>& p, const CutRay& a, const 
 
 bool CutValues::add(const std::vector<std::vector<double>>& momenta,
                     const std::vector<std::vector<int>>& neighbours,
-                    const std::vector<int>& seeds) {
+                    const std::vector<int>& seeds,
+                    int checked) {
+  constexpr int kRounds = 3;
   const int count = static_cast<int>(momenta.size());
   momenta_ = momenta;
   values_.assign(momenta.size(), {});
@@ -301,7 +304,36 @@ bool CutValues::add(const std::vector<std::vector<double>>& momenta,
   parallel_for(count, thread_count(options_.threads), [&](int i) {
     if (go_on()) values_[i].conjugate = conjugate_time(ray(i), options_.horizon);
   });
-  return search_some(seeds) && spread(neighbours) && relax(neighbours);
+  if (!search_some(seeds) || !spread(neighbours) || !relax(neighbours)) return false;
+  for (int round = 0; round < kRounds && check(checked, neighbours, seeds) > 0;) ++round;
+  return go_on();
+}
+
+std::optional<std::vector<CutValue>> CutValues::of_mesh(
+    const std::vector<std::vector<double>>& momenta,
+    const std::vector<std::vector<int>>& neighbours,
+    int checked) {
+  std::vector<int> number(momenta.size(), -1);
+  std::vector<std::vector<double>> used;
+  for (std::size_t i = 0; i < momenta.size(); ++i) {
+    if (neighbours[i].empty()) continue;
+    number[i] = static_cast<int>(used.size());
+    used.push_back(momenta[i]);
+  }
+  std::vector<std::vector<int>> beside;
+  for (const std::vector<int>& list : neighbours) {
+    if (list.empty()) continue;
+    std::vector<int>& numbers = beside.emplace_back();
+    for (const int j : list) numbers.push_back(number[j]);
+  }
+  std::vector<int> all(used.size());
+  std::iota(all.begin(), all.end(), 0);
+  if (!add(used, beside, all, checked)) return std::nullopt;
+  std::vector<CutValue> values(momenta.size(), {false, std::nan(""), std::nan("")});
+  for (std::size_t i = 0; i < momenta.size(); ++i) {
+    if (number[i] >= 0) values[i] = values_[number[i]];
+  }
+  return values;
 }
 
 // A few of these, spread evenly.

@@ -19,6 +19,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -71,10 +72,18 @@ class CutValues {
   [[nodiscard]] bool stopped() const { return stopped_; }
 
   // Adds rays with these momenta, whose neighbours are given (also among each other), and finds
-  // their cut times. Some of the `seeds` are searched first. False when stopped.
+  // their cut times. Some of the `seeds` are searched first, and `checked` of them once more, until
+  // these searches tell nothing new. False when stopped.
   bool add(const std::vector<std::vector<double>>& momenta,
            const std::vector<std::vector<int>>& neighbours,
-           const std::vector<int>& seeds);
+           const std::vector<int>& seeds,
+           int checked);
+  // The same for the vertices of a mesh, any of which may be searched. What has no neighbours is
+  // left out, and is unknown. Nothing when stopped.
+  [[nodiscard]] std::optional<std::vector<CutValue>> of_mesh(
+      const std::vector<std::vector<double>>& momenta,
+      const std::vector<std::vector<int>>& neighbours,
+      int checked);
   // Adds rays one of whose two neighbours, known ones, leads to each. Of some the values may be
   // known already; `found` is empty where there are none.
   bool add_between(const std::vector<std::vector<double>>& momenta,
@@ -85,8 +94,6 @@ class CutValues {
   [[nodiscard]] CutRay cut_ray(int i) const { return {momenta_[i], values_[i]}; }
   // The value of a ray between two others; nothing is added.
   [[nodiscard]] CutValue beside(const std::vector<double>& p, const CutRay& a, const CutRay& b);
-  // Searches so many of these rays once more, spread evenly, and takes what is less. How many were.
-  int check(int count, const std::vector<std::vector<int>>& neighbours, const std::vector<int>& of);
 
  private:
   [[nodiscard]] Ray ray(int i) const { return {dynamics_, from_, momenta_[i]}; }
@@ -133,6 +140,8 @@ class CutValues {
   bool spread(const std::vector<std::vector<int>>& neighbours);
   bool relax(const std::vector<std::vector<int>>& neighbours);
   bool improve(int i, const std::vector<int>& neighbours, CutValue& value) const;
+  // Searches so many of these rays once more, spread evenly, and takes what is less. How many were.
+  int check(int count, const std::vector<std::vector<int>>& neighbours, const std::vector<int>& of);
   bool go_on();
 
   Dynamics dynamics_;

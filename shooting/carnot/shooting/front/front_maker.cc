@@ -238,18 +238,13 @@ class FrontMaker {
     return all;
   }
 
-  // Of the mesh as it is, and checked.
+  // Of the mesh as it is.
   bool find_cuts() {
-    const int checked = momenta_.dimension() == 1 ? 4 : 16;
-    constexpr int kRounds = 3;
-    const std::vector<std::vector<int>> neighbours = surface_.neighbours();
     const std::vector<int> seeds = seeds_.empty() ? every_vertex() : seeds_;
-    if (!cuts_.add(momenta_from(0), neighbours, seeds)) return false;
-    for (int round = 0; round < kRounds && cuts_.check(checked, neighbours, seeds) > 0; ++round) {
-      if (!go_on()) return false;
-    }
-    return go_on();
+    return cuts_.add(momenta_from(0), surface_.neighbours(), seeds, checked()) && go_on();
   }
+  // So many rays of a mesh are searched once more.
+  [[nodiscard]] int checked() const { return momenta_.dimension() == 1 ? 4 : 16; }
 
   // Whether a vertex belongs to the surface.
   [[nodiscard]] bool is_inside(int i) const {
@@ -434,10 +429,14 @@ class FrontMaker {
     return vertex;
   }
 
+  // Whether cut times are asked for that the mesh itself does not need.
+  [[nodiscard]] bool adds_cuts() const { return options_.times && !needs_cuts(); }
   bool made_times() {
-    if (options_.what != FrontKind::kFront || !options_.times) return true;
-    seeds_.clear();  // of the first mesh; now any vertex may be searched
-    return find_cuts();
+    if (!adds_cuts()) return true;
+    auto values = cuts_.of_mesh(momenta_from(0), surface_.neighbours(), checked());
+    if (!values) return false;
+    added_cuts_ = std::move(*values);
+    return go_on();
   }
 
   void sew_sphere(FrontMesh& mesh) {
@@ -504,15 +503,17 @@ class FrontMaker {
   void fill_times(int i, FrontVertex& vertex) const {
     constexpr std::array kNames{"front", "sphere", "caustic", "cut"};
     vertex.label = kNames[static_cast<int>(options_.what)];
-    if (needs_cuts() || (options_.what == FrontKind::kFront && options_.times)) {
-      vertex.cut_time = cuts_[i].t;
-      vertex.conjugate_time = cuts_[i].conjugate;
+    if (needs_cuts() || adds_cuts()) {
+      const CutValue& cut = needs_cuts() ? cuts_[i] : added_cuts_[i];
+      vertex.cut_time = cut.t;
+      vertex.conjugate_time = cut.conjugate;
+    }
+    if (needs_cuts()) {
       const bool on_seam =
           options_.what == FrontKind::kCut || (border_ >= 0 && i >= border_ && i < seam_end_);
       if (on_seam) vertex.label = cuts_[i].at_conjugate ? "conjugate" : "maxwell";
-    } else if (options_.what == FrontKind::kCaustic) {
-      vertex.conjugate_time = times_[i];
     }
+    if (options_.what == FrontKind::kCaustic) vertex.conjugate_time = times_[i];
   }
 
   [[nodiscard]] std::string beyond_bound() const {
@@ -588,7 +589,8 @@ class FrontMaker {
   int seam_end_ = std::numeric_limits<int>::max();  // vertices from here on are inside
   bool open_at_bound_ = false;                      // some extremals are still inside there
   long rough_ = 0;
-  std::vector<char> astray_;  // whether a vertex of a section is not on it
+  std::vector<CutValue> added_cuts_;  // of each vertex, where the mesh itself does not need them
+  std::vector<char> astray_;          // whether a vertex of a section is not on it
   std::atomic<bool> stopped_{false};
 };
 

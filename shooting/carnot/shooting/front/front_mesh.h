@@ -24,7 +24,7 @@ struct FrontOptions {
   std::vector<std::pair<int, double>> fixed{};  // momenta p_j(0)
   // What holds at all ends: of a front whose momenta are a circle times a plane, or of a sphere in
   // four coordinates, which is then the places of the section at the distance R. Angles that differ
-  // by whole turns agree on a front, and do not on a sphere. Cut times are those on the seam.
+  // by whole turns agree on a front, and do not on a sphere.
   std::optional<EndCondition> section{};
   int order = 1;       // of a caustic: the k-th conjugate points, with multiplicity
   bool cusps = false;  // cusp lines and umbilics of a caustic
@@ -36,9 +36,11 @@ struct FrontOptions {
   // an eighth of the longest.
   double edge = 0.1;
   double angle = 0.35;
-  int most = 100000;   // vertices
-  double bound = 0;    // of the coordinates along the line or in the plane; 0: chosen
-  bool times = false;  // cut and conjugate times at the vertices of a front, too
+  int most = 100000;  // vertices
+  double bound = 0;   // of the coordinates along the line or in the plane; 0: chosen
+  // Cut and conjugate times at all vertices. Without it a front has none, a caustic has the
+  // conjugate times, the section of a sphere has the cut times of its seam only.
+  bool times = false;
   bool mod_angles = true;
   std::vector<double> signs{};  // under which places are one, as in cut_time.h
   std::uint64_t seed = 0;
@@ -46,7 +48,7 @@ struct FrontOptions {
   Progress progress;  // returns false to stop
 };
 
-// NaN where a time was not asked for, infinite where there is none up to 2 R.
+// NaN where a time was not asked for, infinite where there is none up to 1.5 R.
 struct FrontVertex {
   std::vector<double> q;
   std::vector<double> p0;  // of unit speed

@@ -1,18 +1,25 @@
 #include "carnot/shooting/front/section_mesh.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "carnot/numerics/parallel.h"
+#include "carnot/shooting/front/cut_values.h"
 #include "carnot/shooting/front/omissions.h"
 #include "carnot/shooting/front/seam.h"
 #include "carnot/shooting/front/section_sphere.h"
+#include "carnot/shooting/front/surface.h"
+#include "carnot/shooting/front/unit_momenta.h"
 #include "carnot/shooting/problem/turn_rates.h"
 #include "carnot/shooting/rays/conjugate_time.h"
 #include "carnot/shooting/rays/ray.h"
 
 namespace carnot::internal {
 namespace {
+
+constexpr double kHorizon = 1.5;  // lengths, that times are followed to
 
 // Whether places may be as near whose angles agree but for whole turns.
 bool may_turn(const Dynamics& dynamics,
@@ -27,12 +34,51 @@ bool may_turn(const Dynamics& dynamics,
   return !(rate * length < period - std::abs(condition.value));
 }
 
+// The cut times of all vertices whose momenta are known, from neighbour to neighbour. Those on the
+// seam are known already. Adds to `searches`, and to `omissions` what is not found. False when
+// stopped.
+bool find_cut_times(const Dynamics& dynamics,
+                    const std::vector<double>& from,
+                    const FrontOptions& options,
+                    FrontMesh& mesh,
+                    Omissions& omissions) {
+  constexpr int kChecked = 16;  // rays, that are searched once more
+  std::vector<std::vector<double>> momenta;
+  for (const FrontVertex& vertex : mesh.vertices) momenta.push_back(vertex.p0);
+  const auto is_known = [&](int i) { return !std::isnan(momenta[i][0]); };
+  Surface surface;
+  surface.vertices.resize(momenta.size());
+  for (const auto& t : mesh.triangles) {
+    if (std::all_of(t.begin(), t.end(), is_known)) surface.triangles.push_back(t);
+  }
+  CutValues cuts(dynamics,
+                 from,
+                 UnitMomenta(dynamics, from, options.fixed, true),
+                 {kHorizon * options.length,
+                  options.mod_angles,
+                  options.signs,
+                  options.seed,
+                  options.threads,
+                  options.progress});
+  const auto values = cuts.of_mesh(momenta, surface.neighbours(), kChecked);
+  mesh.searches += cuts.searches();
+  if (!values) return false;
+  for (std::size_t i = 0; i < values->size(); ++i) {
+    FrontVertex& vertex = mesh.vertices[i];
+    if (std::isnan(vertex.cut_time)) vertex.cut_time = (*values)[i].t;
+  }
+  if (const long count = cuts.unknown(0); count > 0) {
+    omissions.add() << "searches did not find the cut times of " << count
+                    << " extremals, which are taken for their conjugate times";
+  }
+  return true;
+}
+
 }  // namespace
 
 FrontMesh make_section_mesh(const Dynamics& dynamics,
                             const std::vector<double>& from,
                             const FrontOptions& options) {
-  constexpr double kHorizon = 2;  // lengths, that conjugate times are followed to
   const SectionOptions how{*options.section,
                            options.length,
                            options.edge,
@@ -64,6 +110,10 @@ FrontMesh make_section_mesh(const Dynamics& dynamics,
   mesh.euler = topology.euler;
   if (mesh.closed) mesh.volume = sphere.volume;
   Omissions omissions;
+  if (options.times && !find_cut_times(dynamics, from, options, mesh, omissions)) {
+    mesh.finished = false;
+    return mesh;
+  }
   if (mesh.triangles.empty()) {
     omissions.add() << "no place of the section is as near as the length";
   }
