@@ -72,7 +72,7 @@ Json singular_json(const FrontVertex& point) {
   json["q"] = point.q;
   json["p0"] = point.p0;
   json["conjugate_time"] = point.conjugate_time;
-  json["label"] = point.label;
+  json["label"] = name_of(point.label);
   return json;
 }
 
@@ -147,7 +147,7 @@ std::string cusps_text(const FrontMesh& mesh) {
   const auto tell = [&](const std::vector<FrontVertex>& points, int digits) {
     for (const FrontVertex& point : points) {
       text += fmt::format("{} at {}, time {}\n",
-                          point.label,
+                          name_of(point.label),
                           text_vector(point.q, digits),
                           text_number(point.conjugate_time, digits));
     }

@@ -48,9 +48,19 @@ std::string csv(const SceneInfo& info, const std::vector<FrontMesh>& meshes) {
         if (!std::isnan(x)) fmt::format_to(Buffer(out), "{:.17g}", x);
         out += ',';
       }
-      out += vertex.label;
+      out += name_of(vertex.label);
       out += '\n';
     }
+  }
+  return out;
+}
+
+// In formats without words labels are numbers, which a line tells: those of vertices come first.
+std::string legend() {
+  std::string out = "label:";
+  for (int i = 0; i < kFrontLabels; ++i) {
+    fmt::format_to(
+        Buffer(out), "{} {} {}", i == 0 ? "" : ",", i, name_of(static_cast<FrontLabel>(i)));
   }
   return out;
 }
@@ -104,7 +114,7 @@ std::string ply(const SceneInfo& info,
                 const std::vector<FrontMesh>& meshes,
                 const std::vector<int>& seen) {
   const std::vector<Column> columns = columns_of(info);
-  std::string out = "ply\nformat ascii 1.0\n";
+  std::string out = "ply\nformat ascii 1.0\ncomment " + legend() + "\n";
   fmt::format_to(Buffer(out), "element vertex {}\n", vertices_of(meshes));
   for (const char* name : {"x", "y", "z"}) {
     fmt::format_to(Buffer(out), "property double {}\n", name);
@@ -112,6 +122,7 @@ std::string ply(const SceneInfo& info,
   for (const Column& column : columns) {
     fmt::format_to(Buffer(out), "property double {}\n", column.name);
   }
+  out += "property int label\n";
   const bool curves = segments_of(meshes) > 0;
   if (curves) {
     fmt::format_to(Buffer(out), "element edge {}\n", segments_of(meshes));
@@ -126,7 +137,7 @@ std::string ply(const SceneInfo& info,
       for (const Column& column : columns) {
         fmt::format_to(Buffer(out), "{:.17g} ", column.value(mesh, vertex));
       }
-      out.back() = '\n';
+      fmt::format_to(Buffer(out), "{}\n", static_cast<int>(vertex.label));
     }
   }
   put_triangles(meshes, "3 {} {} {}\n", out);
@@ -165,6 +176,13 @@ std::string vtp(const SceneInfo& info,
     }
     out += "</DataArray>\n";
   }
+  out += "<!-- " + legend() + " -->\n<DataArray type=\"Int32\" Name=\"label\" format=\"ascii\">\n";
+  for (const FrontMesh& mesh : meshes) {
+    for (const FrontVertex& vertex : mesh.vertices) {
+      fmt::format_to(Buffer(out), "{}\n", static_cast<int>(vertex.label));
+    }
+  }
+  out += "</DataArray>\n";
   // Cells are lines or triangles: their corners, and where the corners of each end.
   const bool curves = segments_of(meshes) > 0;
   const char* cells = curves ? "Lines" : "Polys";

@@ -140,11 +140,14 @@ TEST(FrontCommand, WritesSurfaces) {
   const long vertices = json["surfaces"][0]["vertices"].get<long>();
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), vertices + 1);
   ASSERT_EQ(sandbox.run(with(sphere, {"s.ply"})).status, 0);
-  EXPECT_THAT(read_text(sandbox.directory() / "s.ply"),
-              HasSubstr("element vertex " + std::to_string(vertices) + "\n"));
+  const std::string ply = read_text(sandbox.directory() / "s.ply");
+  EXPECT_THAT(ply, HasSubstr("element vertex " + std::to_string(vertices) + "\n"));
+  EXPECT_THAT(ply, HasSubstr("comment label: 0 front, 1 sphere, "));
+  EXPECT_THAT(ply, HasSubstr("property double length\nproperty int label\n"));
   ASSERT_EQ(sandbox.run(with(sphere, {"s.vtp"})).status, 0);
-  EXPECT_THAT(read_text(sandbox.directory() / "s.vtp"),
-              HasSubstr("NumberOfPoints=\"" + std::to_string(vertices) + "\""));
+  const std::string vtp = read_text(sandbox.directory() / "s.vtp");
+  EXPECT_THAT(vtp, HasSubstr("NumberOfPoints=\"" + std::to_string(vertices) + "\""));
+  EXPECT_THAT(vtp, HasSubstr("<DataArray type=\"Int32\" Name=\"label\""));
 }
 
 TEST(FrontCommand, WritesAndDrawsCurves) {

@@ -59,7 +59,7 @@ TEST(SectionSphere, OfTheVehicleIsClosedAndExact) {
     EXPECT_NEAR(internal::speed_of(dynamics, kOrigin, vertex.p0), 1, kRoundOff);
     EXPECT_GE(vertex.conjugate_time, 1 - 1e-6);  // shortest paths have none before their end
     if (vertex.cut_time == 1) ++seam;
-    EXPECT_EQ(vertex.cut_time == 1, std::string(vertex.label) == "maxwell");
+    EXPECT_EQ(vertex.cut_time == 1, is_maxwell(vertex.label));
   }
   EXPECT_GT(seam, 10);
   constexpr std::size_t kSearched = 20;

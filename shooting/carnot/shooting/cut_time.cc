@@ -1,16 +1,17 @@
 #include "carnot/shooting/cut_time.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
 #include "carnot/shooting/extremal/conjugate_times.h"
-#include "carnot/shooting/extremal/symmetry.h"
 #include "carnot/shooting/find_geodesics.h"
 #include "carnot/shooting/problem/scales.h"
 #include "carnot/shooting/rays/meeting.h"
+#include "carnot/shooting/rays/pair_symmetry.h"
 #include "carnot/shooting/rays/ray.h"
 #include "carnot/shooting/search/deadline.h"
 #include "carnot/shooting/shoot/end_point.h"
@@ -24,6 +25,11 @@ namespace {
 // A path that is shorter than the extremal by less, relative, is as long: ends of searches are good
 // to 1e-10.
 constexpr double kAsLong = 1e-9;
+
+const char* name_of(PairSymmetry symmetry) {
+  constexpr std::array kNames{"none", "mirror", "reversal", "mirror and reversal"};
+  return kNames[static_cast<int>(symmetry)];
+}
 
 // All times are those of unit speed.
 class CutSearch {
@@ -49,7 +55,7 @@ class CutSearch {
       if (!cut_) label_ = "conjugate";
       if (!cut_) cut_ = conjugate_;
     }
-    if (partner_) label_ = name_of_partner();
+    if (partner_) label_ = name_of(symmetry_of_pair(ray_, *cut_, *partner_));
   }
 
   // In the times of the extremal as it was given.
@@ -242,31 +248,6 @@ class CutSearch {
     (shorter ? high_ : low_) = t;
     if (shorter) rivals_ = std::move(rivals);
     return shorter;
-  }
-
-  [[nodiscard]] std::string name_of_partner() const {
-    constexpr double kSame = 1e-6;  // relative, of momenta
-    constexpr double kEnds = 1e-9;  // of the ends, which are as good as the cut time is
-    const long steps = ray_.enough_steps(*cut_);
-    const BoundaryValueProblem problem = ray_.problem(*cut_, steps);
-    const Knots knots = knots_of(problem, ray_.p(), 1, steps);
-    std::vector<double> place = problem.to;
-    for (std::size_t j = 0; j < place.size(); ++j) {
-      if (!partner_->signs.empty()) place[j] *= partner_->signs[j];
-      place[j] += partner_->offset[j];
-    }
-    for (const ProblemSymmetry& symmetry : symmetries_onto(problem, place, kEnds)) {
-      const std::vector<double> image = partner(ray_.dynamics().info, symmetry, knots).p0();
-      double size = 0;
-      for (const double x : image) size = std::max(size, std::abs(x));
-      const int n = static_cast<int>(image.size());
-      if (!(largest_difference(image.data(), partner_->p.data(), n) <= kSame * size)) continue;
-      const bool mirrors = std::any_of(
-          symmetry.mirror.begin(), symmetry.mirror.end(), [](double d) { return d != 1; });
-      if (!mirrors) return "reversal";
-      return symmetry.reverses ? "mirror and reversal" : "mirror";
-    }
-    return "none";
   }
 
   Ray ray_;

@@ -22,6 +22,7 @@
 #include "carnot/shooting/front/enclosed.h"
 #include "carnot/shooting/front/end_section.h"
 #include "carnot/shooting/front/image_scale.h"
+#include "carnot/shooting/front/maxwell_label.h"
 #include "carnot/shooting/front/omissions.h"
 #include "carnot/shooting/front/ray_ends.h"
 #include "carnot/shooting/front/seam.h"
@@ -404,21 +405,22 @@ class FrontMaker {
     for (const CuspLine& line : lines.cusps) {
       CuspEdge edge{{}, line.closed, line.first_umbilic, line.last_umbilic};
       for (const CausticPoint& point : line.points) {
-        edge.points.push_back(vertex_at(point.at, point.t, "cusp"));
+        edge.points.push_back(vertex_at(point.at, point.t, FrontLabel::kCusp));
       }
       mesh.cusps.push_back(std::move(edge));
     }
     for (const Umbilic& one : lines.umbilics) {
-      mesh.umbilics.push_back(
-          vertex_at(one.at, one.t, one.hyperbolic ? "hyperbolic umbilic" : "elliptic umbilic"));
+      const FrontLabel label =
+          one.hyperbolic ? FrontLabel::kHyperbolicUmbilic : FrontLabel::kEllipticUmbilic;
+      mesh.umbilics.push_back(vertex_at(one.at, one.t, label));
     }
     for (const Swallowtail& one : lines.swallowtails) {
-      mesh.swallowtails.push_back(vertex_at(one.at, one.t, "swallowtail"));
+      mesh.swallowtails.push_back(vertex_at(one.at, one.t, FrontLabel::kSwallowtail));
     }
     return lines.finished;
   }
 
-  [[nodiscard]] FrontVertex vertex_at(const UnitMomentum& at, double t, const char* label) const {
+  [[nodiscard]] FrontVertex vertex_at(const UnitMomentum& at, double t, FrontLabel label) const {
     FrontVertex vertex;
     vertex.p0 = momenta_.momentum(at);
     vertex.conjugate_time = t;
@@ -488,21 +490,28 @@ class FrontMaker {
     if (options_.what == FrontKind::kSphere && n_ <= 3) sew_sphere(mesh);
     std::vector<int> kept;
     drop_unused(surface_, kept);
-    for (const int i : kept) {
-      FrontVertex vertex;
+    mesh.vertices.resize(kept.size());
+    for_all(0, static_cast<int>(kept.size()), [&](int k) {
+      const int i = kept[k];
+      FrontVertex& vertex = mesh.vertices[k];
       const auto end = ends_.begin() + static_cast<long>(i) * n_;
       vertex.q.assign(end, end + n_);
-      vertex.p0 = momentum(static_cast<int>(mesh.vertices.size()));
+      vertex.p0 = momentum(k);
       fill_times(i, vertex);
-      mesh.vertices.push_back(std::move(vertex));
-    }
+    });
     mesh.triangles = surface_.triangles;
     mesh.segments = surface_.segments;
   }
 
+  [[nodiscard]] FrontLabel seam_label(const CutValue& cut, const std::vector<double>& p0) const {
+    if (cut.at_conjugate || cut.partner.p.empty()) return FrontLabel::kConjugate;
+    return maxwell_label(Ray(dynamics_, from_, p0), cut.t, cut.partner);
+  }
+
   void fill_times(int i, FrontVertex& vertex) const {
-    constexpr std::array kNames{"front", "sphere", "caustic", "cut"};
-    vertex.label = kNames[static_cast<int>(options_.what)];
+    constexpr std::array kLabels{
+        FrontLabel::kFront, FrontLabel::kSphere, FrontLabel::kCaustic, FrontLabel::kCut};
+    vertex.label = kLabels[static_cast<int>(options_.what)];
     if (needs_cuts() || adds_cuts()) {
       const CutValue& cut = needs_cuts() ? cuts_[i] : added_cuts_[i];
       vertex.cut_time = cut.t;
@@ -511,7 +520,7 @@ class FrontMaker {
     if (needs_cuts()) {
       const bool on_seam =
           options_.what == FrontKind::kCut || (border_ >= 0 && i >= border_ && i < seam_end_);
-      if (on_seam) vertex.label = cuts_[i].at_conjugate ? "conjugate" : "maxwell";
+      if (on_seam) vertex.label = seam_label(cuts_[i], vertex.p0);
     }
     if (options_.what == FrontKind::kCaustic) vertex.conjugate_time = times_[i];
   }

@@ -18,6 +18,31 @@ namespace carnot {
 // first conjugate points, or where they stop being shortest paths.
 enum class FrontKind { kFront, kSphere, kCaustic, kCut };
 
+// What a vertex is: one of what was asked for, or more than that.
+enum class FrontLabel {
+  kFront,
+  kSphere,
+  kCaustic,
+  kCut,
+  // On the seam of a sphere and on a cut locus: neighbours arrive, or another extremal does, which
+  // no symmetry of the scene makes of this one, or which one makes.
+  kConjugate,
+  kMaxwell,
+  kMaxwellByMirror,
+  kMaxwellByReversal,
+  kMaxwellByMirrorAndReversal,
+  // Singular points of a caustic.
+  kCusp,
+  kSwallowtail,
+  kHyperbolicUmbilic,
+  kEllipticUmbilic,
+  kUnknown,  // on the section of a sphere: no extremal was found
+};
+inline constexpr int kFrontLabels = 14;
+const char* name_of(FrontLabel label);
+// Whether two extremals meet there.
+bool is_maxwell(FrontLabel label);
+
 struct FrontOptions {
   FrontKind what = FrontKind::kFront;
   double length = 1;                            // R
@@ -54,10 +79,7 @@ struct FrontVertex {
   std::vector<double> p0;  // of unit speed
   double cut_time = std::numeric_limits<double>::quiet_NaN();
   double conjugate_time = std::numeric_limits<double>::quiet_NaN();
-  // front, sphere, caustic or cut; on a seam: maxwell or conjugate; of singular points of a
-  // caustic: cusp, swallowtail, hyperbolic umbilic or elliptic umbilic; of the section of a sphere
-  // where no extremal was found: unknown
-  const char* label = "";
+  FrontLabel label = FrontLabel::kFront;
 };
 
 // Where a caustic has a sharp edge, point after point. It may end at umbilics, where it goes over

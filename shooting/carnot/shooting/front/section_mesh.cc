@@ -7,6 +7,7 @@
 
 #include "carnot/numerics/parallel.h"
 #include "carnot/shooting/front/cut_values.h"
+#include "carnot/shooting/front/maxwell_label.h"
 #include "carnot/shooting/front/omissions.h"
 #include "carnot/shooting/front/seam.h"
 #include "carnot/shooting/front/section_sphere.h"
@@ -91,18 +92,21 @@ FrontMesh make_section_mesh(const Dynamics& dynamics,
   mesh.length = options.length;
   mesh.searches = sphere.searches;
   if (!mesh.finished) return mesh;
-  for (SphereVertex& one : sphere.vertices) {
-    FrontVertex vertex{std::move(one.q), std::move(one.p0)};
-    if (one.on_seam) vertex.cut_time = options.length;
-    const bool known = std::isfinite(vertex.p0[0]);
-    vertex.label = one.on_seam ? "maxwell" : known ? "sphere" : "unknown";
-    mesh.vertices.push_back(std::move(vertex));
-  }
+  mesh.vertices.resize(sphere.vertices.size());
   parallel_for(static_cast<int>(mesh.vertices.size()), thread_count(options.threads), [&](int i) {
+    SphereVertex& one = sphere.vertices[i];
     FrontVertex& vertex = mesh.vertices[i];
+    vertex.q = std::move(one.q);
+    vertex.p0 = std::move(one.p0);
+    vertex.label = FrontLabel::kUnknown;
     if (std::isnan(vertex.p0[0])) return;
-    vertex.conjugate_time =
-        conjugate_time(Ray(dynamics, from, vertex.p0), kHorizon * options.length);
+    const Ray ray(dynamics, from, vertex.p0);
+    vertex.label = FrontLabel::kSphere;
+    vertex.conjugate_time = conjugate_time(ray, kHorizon * options.length);
+    if (one.other.empty()) return;
+    vertex.cut_time = options.length;
+    const Rival rival{std::move(one.other), std::vector<double>(vertex.q.size()), options.length};
+    vertex.label = maxwell_label(ray, options.length, rival);
   });
   mesh.triangles = std::move(sphere.triangles);
   const Topology topology = topology_of({{}, mesh.triangles, {}});

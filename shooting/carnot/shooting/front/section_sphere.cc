@@ -313,14 +313,15 @@ class SectionSphereMaker {
     const auto point = lead(*level_, simplex, middle, {a.extremal, b.extremal});
     if (!point || point->s.minCoeff() < 0 || point->s.sum() > 1) return std::nullopt;
     if (same_extremal(point->p[0], point->p[1])) return std::nullopt;
-    return SphereVertex{
-        numbers_of(corner + simplex.sides * point->s), numbers_of(point->p[0]), true};
+    return SphereVertex{numbers_of(corner + simplex.sides * point->s),
+                        numbers_of(point->p[0]),
+                        numbers_of(point->p[1])};
   }
 
   void triangulate() {
     for (const OnSide& vertex : vertices_) {
       sphere_.rough += vertex.known ? 0 : 1;
-      SphereVertex one{numbers_of(place_on(vertex.side, vertex.part)), {}, false};
+      SphereVertex one{numbers_of(place_on(vertex.side, vertex.part)), {}, {}};
       one.p0.assign(dynamics_.dof, std::nan(""));
       if (vertex.known) one.p0 = numbers_of(vertex.extremal.p);
       sphere_.vertices.push_back(std::move(one));

@@ -21,8 +21,8 @@ namespace carnot::internal {
 
 struct SphereVertex {
   std::vector<double> q;
-  std::vector<double> p0;  // of unit speed
-  bool on_seam = false;    // others arrive there in the same time
+  std::vector<double> p0;     // of unit speed
+  std::vector<double> other;  // of another extremal that arrives in the same time; mostly empty
 };
 
 struct SectionSphere {
