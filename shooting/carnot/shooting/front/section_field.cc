@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "carnot/shooting/front/grid_topology.h"
 #include "carnot/shooting/front/level_point.h"
 #include "carnot/shooting/linear/dense.h"
 #include "carnot/shooting/rays/ray.h"
@@ -218,10 +219,26 @@ std::array<int, 3> SectionField::fine_counts() const {
 }
 
 bool SectionField::solve_finely() {
+  // Where the sphere is thinner than cells its inside has handles. Then the grid is made finer, but
+  // where these are many: they come from places that are not known. The vehicle's sphere in
+  // theta = phi has one handle with edges of 0.3, and none on a grid that is once finer.
+  constexpr int kFinerGrids = 2;
+  constexpr double kFiner = 1.25;
+  constexpr int kMany = 4;
+  std::array<int, 3> counts = fine_counts();
+  for (int finer = 0;; ++finer) {
+    if (!solve_within(counts)) return false;
+    const int handles =
+        grid_topology(grid_, [this](GridPlace i) { return is_inside(i); }).handles();
+    if (handles <= 0 || handles >= kMany || finer == kFinerGrids) return true;
+    for (int& count : counts) count = 2 * static_cast<int>(std::ceil(0.5 * kFiner * count));
+  }
+}
+
+bool SectionField::solve_within(const std::array<int, 3>& counts) {
   constexpr long kCheck = 100;
   constexpr int kRounds = 8;
   constexpr double kWider = 1.2;
-  const std::array<int, 3> counts = fine_counts();
   for (int round = 0; round < kRounds; ++round) {
     if (!solve(grid_of(counts), kCheck)) return false;
     const std::array<double, 3> reach = reaches();

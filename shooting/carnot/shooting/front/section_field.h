@@ -69,8 +69,10 @@ class SectionField {
   bool settle_box();
   // Turns the box along a thin sphere. Whether it did so.
   bool shear();
-  // Widens the box until its border is outside.
+  // On a grid that is fine enough for the sphere to have no handles, if that helps.
   bool solve_finely();
+  // Widens the box until its border is outside.
+  bool solve_within(const std::array<int, 3>& counts);
   // Where a place is in the box: from -1 to 1 along each axis.
   [[nodiscard]] std::array<double, 3> in_box(GridPlace i) const;
   // How far out places within the distance are.
