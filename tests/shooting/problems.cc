@@ -126,6 +126,11 @@ BoundaryValueProblem pendulum(double from, double to, double time) {
   return {make_dynamics(Pendulum{}), {from}, {to}, time};
 }
 
+Dynamics vehicle_in_units(double lengths) {
+  const double squared = lengths * lengths;
+  return dynamics("vehicle", {{"length", lengths}, {"alpha", squared}, {"beta", squared}});
+}
+
 Dynamics vehicle_with_alpha(double alpha) { return dynamics("vehicle", {{"alpha", alpha}}); }
 
 Dynamics vehicle_midpoint() { return dynamics("vehicle", {}, "midpoint"); }

@@ -34,6 +34,9 @@ BoundaryValueProblem oscillator(std::vector<double> from, std::vector<double> to
 // q'' = -sin q.
 BoundaryValueProblem pendulum(double from, double to, double time);
 
+// The vehicle with alpha = beta = length = 1 where a length is told in another unit, so many of
+// which are 1.
+Dynamics vehicle_in_units(double lengths);
 // The vehicle with beta = length = 1.
 Dynamics vehicle_with_alpha(double alpha);
 

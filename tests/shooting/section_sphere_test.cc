@@ -39,33 +39,41 @@ double length_to(const std::vector<double>& q) {
 }
 
 // Each vertex is the end of an extremal of unit speed, in the section, and no way there is shorter.
-// Where the section is cut, neighbours meet: the mesh has no border.
+// Where the section is cut, neighbours meet: the mesh has no border. All this in another unit of
+// length, but for the searches.
 TEST(SectionSphere, OfTheVehicleIsClosedAndExact) {
-  const Dynamics dynamics = vehicle();
-  const FrontMesh mesh = wavefront(dynamics, kOrigin, aligned());
+  constexpr double kUnit = 1e-3;
+  const std::vector<double> units{kUnit, kUnit, 1, 1};
+  const Dynamics dynamics = test::vehicle_in_units(kUnit);
+  FrontOptions options = aligned();
+  options.length = kUnit;
+  const FrontMesh mesh = wavefront(dynamics, kOrigin, options);
   ASSERT_TRUE(mesh.finished);
   EXPECT_EQ(mesh.message, "");
   EXPECT_TRUE(mesh.closed);
-  EXPECT_GT(mesh.volume, 0.011);  // 0.0116 on a mesh of edges of 0.1
-  EXPECT_LT(mesh.volume, 0.012);
+  EXPECT_EQ(mesh.euler, 2);
+  EXPECT_GT(mesh.volume, 0.011 * kUnit * kUnit);  // 0.0116 on a mesh of edges of 0.1
+  EXPECT_LT(mesh.volume, 0.012 * kUnit * kUnit);
   ASSERT_GT(mesh.vertices.size(), 1000U);
   int seam = 0;
   for (const FrontVertex& vertex : mesh.vertices) {
     EXPECT_NEAR(vertex.q[2], vertex.q[3], kRoundOff);
     const internal::Ray ray(dynamics, kOrigin, vertex.p0);
-    const std::vector<double> end = ray.at(1, 2 * ray.enough_steps(1));
+    const std::vector<double> end = ray.at(kUnit, 2 * ray.enough_steps(kUnit));
     ASSERT_EQ(end.size(), 8U);
-    for (int j = 0; j < 4; ++j) EXPECT_NEAR(end[j], vertex.q[j], kRoundOff);
+    for (int j = 0; j < 4; ++j) EXPECT_NEAR(end[j], vertex.q[j], kRoundOff * units[j]);
     EXPECT_NEAR(internal::speed_of(dynamics, kOrigin, vertex.p0), 1, kRoundOff);
-    EXPECT_GE(vertex.conjugate_time, 1 - 1e-6);  // shortest paths have none before their end
-    if (vertex.cut_time == 1) ++seam;
-    EXPECT_EQ(vertex.cut_time == 1, is_maxwell(vertex.label));
+    // Shortest paths have none before their end.
+    EXPECT_GE(vertex.conjugate_time, (1 - 1e-6) * kUnit);
+    if (vertex.cut_time == kUnit) ++seam;
+    EXPECT_EQ(vertex.cut_time == kUnit, is_maxwell(vertex.label));
   }
   EXPECT_GT(seam, 10);
   constexpr std::size_t kSearched = 20;
   for (std::size_t k = 0; k < kSearched; ++k) {
-    const FrontVertex& vertex = mesh.vertices[k * (mesh.vertices.size() - 1) / (kSearched - 1)];
-    EXPECT_NEAR(length_to(vertex.q), 1, 1e-8) << k;
+    std::vector<double> q = mesh.vertices[k * (mesh.vertices.size() - 1) / (kSearched - 1)].q;
+    for (std::size_t j = 0; j < q.size(); ++j) q[j] /= units[j];
+    EXPECT_NEAR(length_to(q), 1, 1e-8) << k;
   }
 }
 

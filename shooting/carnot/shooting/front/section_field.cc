@@ -7,6 +7,7 @@
 #include "carnot/shooting/front/grid_topology.h"
 #include "carnot/shooting/front/level_point.h"
 #include "carnot/shooting/linear/dense.h"
+#include "carnot/shooting/problem/natural_scales.h"
 #include "carnot/shooting/rays/ray.h"
 
 namespace carnot::internal {
@@ -114,16 +115,18 @@ std::array<double, 3> SectionField::reaches() const {
 }
 
 void SectionField::begin_box() {
-  double largest = 0;
+  const BoundaryValueProblem here(dynamics_, from_, from_, options_.length);
+  const std::vector<double> scales = natural_scales(here).q;
+  double largest = 0;  // in natural scales
   for (int k = 0; k < 3; ++k) {
     std::vector<double> z = from_;
     z.resize(2 * from_.size());
     z[from_.size() + seen_[k]] = 1;
     half_[k] = std::sqrt(2 * motion_at(dynamics_, z.data()).hamiltonian) * options_.length;
-    largest = std::max(largest, half_[k]);
+    largest = std::max(largest, half_[k] / scales[seen_[k]]);
   }
-  for (double& half : half_) {
-    if (!(half > 0)) half = 0.5 * largest;
+  for (int k = 0; k < 3; ++k) {
+    if (!(half_[k] > 0)) half_[k] = 0.5 * largest * scales[seen_[k]];
   }
 }
 

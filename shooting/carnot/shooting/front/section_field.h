@@ -63,7 +63,8 @@ class SectionField {
   [[nodiscard]] FieldGrid grid_of(const std::array<int, 3>& counts) const;
   // False when stopped, as of those that follow.
   bool solve(FieldGrid grid, long check);
-  // As far as one gets along each axis alone, and along others half the most of that.
+  // As far as one gets along each axis alone, and along others half the most of that, in the
+  // natural scales of the scene.
   void begin_box();
   // Fits the box to the sphere, roughly.
   bool settle_box();
