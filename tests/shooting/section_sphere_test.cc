@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
+#include "carnot/shooting/cut_time.h"
 #include "carnot/shooting/find_geodesics.h"
 #include "carnot/shooting/front/level_point.h"
 #include "carnot/shooting/rays/ray.h"
@@ -77,14 +79,41 @@ TEST(SectionSphere, OfTheVehicleIsClosedAndExact) {
   }
 }
 
-TEST(SectionSphere, IsTheSameForAnyNumberOfThreads) {
+FrontOptions at_the_tip() {
   FrontOptions options = aligned();
   options.edge = 1;
+  options.section = EndCondition{0, -1, 0.9};  // x = 0.9
+  options.times = true;
+  return options;
+}
+
+TEST(SectionSphere, IsTheSameForAnyNumberOfThreads) {
+  FrontOptions options = at_the_tip();
   options.threads = 2;
   const FrontMesh one = wavefront(vehicle(), kOrigin, options);
   options.threads = 3;
   const FrontMesh other = wavefront(vehicle(), kOrigin, options);
+  EXPECT_TRUE(one.closed);
   test::expect_the_same(one, other);
+  for (std::size_t i = 0; i < one.vertices.size(); ++i) {
+    EXPECT_EQ(one.vertices[i].cut_time, other.vertices[i].cut_time);
+  }
+}
+
+TEST(SectionSphere, HasCutTimesWhereTheyAreAskedFor) {
+  const FrontMesh mesh = wavefront(vehicle(), kOrigin, at_the_tip());
+  CutTimeOptions search;
+  search.max_time = 1.5;
+  constexpr std::size_t kSearched = 6;
+  for (std::size_t k = 0; k < mesh.vertices.size(); ++k) {
+    const FrontVertex& vertex = mesh.vertices[k];
+    EXPECT_GE(vertex.cut_time, 1);
+    EXPECT_LE(vertex.cut_time, vertex.conjugate_time * (1 + kRoundOff));
+    if (k % (mesh.vertices.size() / kSearched) != 0) continue;
+    const CutTime cut = cut_time(vehicle(), kOrigin, vertex.p0, search);
+    const double expected = cut.cut_time.value_or(std::numeric_limits<double>::infinity());
+    if (vertex.cut_time != expected) EXPECT_NEAR(vertex.cut_time, expected, 1e-8) << k;
+  }
 }
 
 TEST(SectionSphere, SaysWhereItIsOutOfReach) {
