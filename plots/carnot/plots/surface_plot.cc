@@ -25,6 +25,23 @@ std::array<int, 2> others(int across) {
   return across == 1 ? std::array{0, 2} : std::array{0, 1};
 }
 
+// What lies in a plane does so but for round-off. That is not drawn in its own size: the axis is an
+// eighth as long as another one of the same unit.
+void widen_flat(const SurfacePage& page, std::array<Interval, 3>& ranges) {
+  constexpr double kFlat = 1e-6;
+  constexpr double kPart = 0.13;
+  for (int k = 0; k < 3; ++k) {
+    for (int l = 0; l < 3; ++l) {
+      if (page.axes[k].unit != page.axes[l].unit || ranges[l].empty()) continue;
+      const double other = ranges[l].span();
+      if (!(ranges[k].span() < kFlat * other)) continue;
+      const double middle = 0.5 * (ranges[k].lower + ranges[k].upper);
+      const double rounded = std::abs(middle) < kFlat * other ? 0 : middle;
+      ranges[k] = {rounded - 0.5 * kPart * other, rounded + 0.5 * kPart * other};
+    }
+  }
+}
+
 std::array<Axis, 3> axes_of(const SurfacePage& page) {
   std::array<Interval, 3> ranges;
   for (const SurfaceSheet& sheet : page.sheets) {
@@ -41,6 +58,7 @@ std::array<Axis, 3> axes_of(const SurfacePage& page) {
       }
     }
   }
+  if (!page.plane) widen_flat(page, ranges);
   return {Axis(ranges[0]), Axis(ranges[1]), Axis(ranges[2])};
 }
 
