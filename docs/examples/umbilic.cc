@@ -4,7 +4,8 @@
 // at hyperbolic umbilics. There the derivative J = dq(1)/dp(0) has rank one. Three momenta have to
 // fulfil three equations for that if J belongs to a symplectic map, and four otherwise (Offen &
 // Ober-Bloebaum, arXiv:2107.13853). So a symplectic method has the umbilic, too, a little beside;
-// another one has none, however small its error is.
+// another one has none, however small its error is. The ellipsoid and the point are those of the
+// article, the first of its umbilics is looked for.
 #include <carnot/load_scene.h>
 #include <carnot/plots/isolines.h>
 #include <carnot/plots/series_plot.h>
@@ -21,16 +22,20 @@ namespace {
 using Matrix = Eigen::Matrix3d;
 using Vector = Eigen::Vector3d;
 
-// The axes are 1, 1.2, 1.5 and 1.9, and u, v, s are angles of a sphere of three dimensions.
+// w^2 + 0.9 x^2 + 1.6 z^2 + 1.2 y^2 = 1, with angles u, v, s of a sphere of three dimensions.
 const std::string kEllipsoid = R"(coordinates u, v, s [angle]
 kinetic = ((-sin(u) cos(v) cos(s) u' - cos(u) sin(v) cos(s) v' - cos(u) cos(v) sin(s) s')^2 +
-  1.44 (cos(u) cos(v) cos(s) u' - sin(u) sin(v) cos(s) v' - sin(u) cos(v) sin(s) s')^2 +
-  2.25 (cos(v) cos(s) v' - sin(v) sin(s) s')^2 + 3.61 cos(s)^2 s'^2) / 2
+  (cos(u) cos(v) cos(s) u' - sin(u) sin(v) cos(s) v' - sin(u) cos(v) sin(s) s')^2 / 0.9 +
+  (cos(v) cos(s) v' - sin(v) sin(s) s')^2 / 1.6 + cos(s)^2 s'^2 / 1.2) / 2
 )";
 
-// From the point (0.5, 0.6, 0.75, 0.95), whose angles have the tangents 1, sqrt(1/2), sqrt(1/3).
+// The angles of the article's point x = 0.1, y = 0.05, z = 0.2, w > 0.
+const double kS = std::asin(0.05 * std::sqrt(1.2));
+const double kV = std::asin(0.2 * std::sqrt(1.6) / std::cos(kS));
 const std::vector<double> kFrom{
-    std::atan(1.0), std::atan(std::sqrt(0.5)), std::atan(std::sqrt(1. / 3))};
+    std::atan2(0.1 * std::sqrt(0.9), std::sqrt(1 - 0.9 * 0.01 - 1.2 * 0.0025 - 1.6 * 0.04)),
+    kV,
+    kS};
 
 // J of so many steps over the time 1.
 Matrix jacobian(const carnot::Dynamics& dynamics, const Vector& p, long steps) {
@@ -73,22 +78,24 @@ carnot::plots::SeriesPanel singular_momenta(const carnot::Dynamics& dynamics,
   constexpr int kHalf = 60;
   const Vector along = centre.normalized();
   const Vector across = along.cross(Vector::UnitX()).normalized();
-  std::vector<double> x;
-  for (int i = -kHalf; i <= kHalf; ++i) x.push_back(0.08 * i / kHalf);
+  std::vector<double> x, y;
+  for (int i = -kHalf; i <= kHalf; ++i) {
+    x.push_back(0.02 * i / kHalf);
+    y.push_back(0.004 * i / kHalf);
+  }
   std::vector<double> values;
   for (const double a : x) {
-    for (const double b : x) {
+    for (const double b : y) {
       const Vector p = centre + centre.norm() * (a * across + b * along);
       values.push_back(jacobian(dynamics, p, steps).determinant());
     }
   }
-  const carnot::plots::Isoline line = carnot::plots::isoline(x, x, values, 0);
+  const carnot::plots::Isoline line = carnot::plots::isoline(x, y, values, 0);
   carnot::plots::SeriesPanel panel;
   panel.title = dynamics.method + ", " + std::to_string(steps) + " steps";
   panel.x.label = "momentum across / |p|";
   panel.y.label = "momentum along / |p|";
   panel.series = {{.title = "", .x = line.x, .y = line.y}};
-  panel.equal_axes = true;
   return panel;
 }
 
@@ -99,7 +106,7 @@ int main(int argc, char** argv) {
   const carnot::OwnMethod explicit_rule =
       carnot::own_method({.name = "explicit midpoint", .a = {{0, 0}, {0.5, 0}}, .b = {0, 1}});
   const carnot::Dynamics exact = carnot::make_dynamics(scene);
-  const Vector known = nearest_umbilic(exact, {-1.7546, -1.2438, 4.8894}, 64);
+  const Vector known = nearest_umbilic(exact, {-2.3417, -1.4940, 0.0465}, 64);
 
   carnot::plots::SeriesPage page;
   page.title = "Momenta of conjugate points near an umbilic of an ellipsoid";
@@ -109,11 +116,12 @@ int main(int argc, char** argv) {
       const Vector p = nearest_umbilic(dynamics, known, steps);
       const Vector values = jacobian(dynamics, p, steps).jacobiSvd().singularValues();
       const double second = values[1] / values[0];
-      const std::string size = second < 1e-12 ? "round-off" : std::to_string(second).substr(0, 7);
+      char size[16] = "round-off";
+      if (second > 1e-12) std::snprintf(size, sizeof size, "%.1e", second);
       std::printf("%-17s  %ld steps: second singular value %s, %.3f away\n",
                   dynamics.method.c_str(),
                   steps,
-                  size.c_str(),
+                  size,
                   (p - known).norm() / known.norm());
       if (steps == 10) page.panels.push_back(singular_momenta(dynamics, p, steps));
     }

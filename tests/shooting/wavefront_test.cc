@@ -40,10 +40,11 @@ Dynamics heisenberg() { return test::heisenberg_group({0, 0, 0}).dynamics; }
 Dynamics unicycle() { return test::unicycle({0, 0, 0}, {0, 0, 0}).dynamics; }
 
 Dynamics grushin() { return test::grushin({0, 0}, {0, 0}).dynamics; }
-// An ellipsoid of three dimensions with these half axes.
-Dynamics ellipsoid(const std::vector<double>& axes) {
+// a x^2 + b y^2 + c z^2 + d w^2 = 1, an ellipsoid of three dimensions.
+Dynamics ellipsoid(const std::vector<double>& coefficients) {
+  const std::vector<double>& k = coefficients;
   return make_dynamics(load_scene(CARNOT_SOURCE_DIR "/docs/examples/scenes/ellipsoid.scene")
-                           .with({{"a", axes[0]}, {"b", axes[1]}, {"c", axes[2]}, {"d", axes[3]}}));
+                           .with({{"a", k[0]}, {"b", k[1]}, {"c", k[2]}, {"d", k[3]}}));
 }
 
 // The end at time t on the Heisenberg group: the velocity turns by a = p_z t.
@@ -301,7 +302,8 @@ TEST(Wavefront, SeesEvenMultiplicities) {
 // Ober-Bloebaum 2021). Both sheets that meet there lead to the same ones. On each of them one cusp
 // line is closed, and two lead from one umbilic to another: those of both sheets together close.
 TEST(Wavefront, TheEllipsoidHasFourHyperbolicUmbilics) {
-  const Dynamics dynamics = ellipsoid({1, 1.2, 1.5, 1.9});
+  // Its half axes are 1, 1.2, 1.5 and 1.9.
+  const Dynamics dynamics = ellipsoid({1, 1 / 1.44, 1 / 2.25, 1 / 3.61});
   constexpr double kSame = 1e-10;
   std::vector<std::vector<double>> first;
   std::array<std::array<int, 4>, 2> across{};  // of each sheet: the umbilic at the other end
@@ -357,6 +359,31 @@ TEST(Wavefront, TheEllipsoidHasFourHyperbolicUmbilics) {
   }
   EXPECT_EQ(at, 0);
   EXPECT_EQ(passed.size(), 4U);
+}
+
+// Offen & Ober-Bloebaum (arXiv:2107.13853) have ten steps of a variational method of order 2, and
+// single precision. So their umbilics are a little beside.
+TEST(Wavefront, TheUmbilicsOfAnArticleAreFound) {
+  constexpr double kTenSteps = 0.006;
+  FrontOptions options = coarse(FrontKind::kCaustic, 6);
+  options.fixed = {{3, 0.0}};
+  options.cusps = true;
+  const std::vector<double> from{0.1, 0.05, 0.2, std::sqrt(0.924)};
+  const FrontMesh mesh = wavefront(ellipsoid({0.9, 1.2, 1.6, 1}), from, options);
+  ASSERT_EQ(mesh.umbilics.size(), 4U);
+  const std::vector<std::array<double, 3>> published{{-0.41641262, -0.05142419, 0.04059413},
+                                                     {-0.4125571, -0.04061218, -0.3533893},
+                                                     {0.2442697, -0.04175623, -0.3565497},
+                                                     {0.22954877, -0.05261957, 0.03806705}};
+  for (const std::array<double, 3>& place : published) {
+    double nearest = 1;
+    for (const FrontVertex& umbilic : mesh.umbilics) {
+      double apart = 0;
+      for (int j = 0; j < 3; ++j) apart = std::max(apart, std::abs(umbilic.q[j] - place[j]));
+      nearest = std::min(nearest, apart);
+    }
+    EXPECT_LT(nearest, kTenSteps);
+  }
 }
 
 // Behind a lens of two bumps. There a cusp line, seen in space, turns back; it is the same place on
