@@ -559,10 +559,7 @@ class FrontMaker {
                       << "bounds, and what these lead to is left out";
     }
     const double from = options_.what == FrontKind::kSphere ? options_.length : 0;
-    if (const long count = cuts_.unknown(from); count > 0) {
-      omissions.add() << "searches did not find the cut times of " << count
-                      << " extremals, which are taken for their conjugate times";
-    }
+    omissions.add_unknown_cuts(cuts_.unknown(from));
     if (const auto count = std::count(astray_.begin(), astray_.end(), 1); count > 0) {
       omissions.add() << "holes about " << count << " places that are not led to the section: it "
                       << "bends there more sharply than the mesh tells";

@@ -13,6 +13,11 @@ class Omissions {
 
   // Where the next thing that is left out is to be written.
   std::ostream& add() { return text_ << (text_.view().empty() ? "" : "; "); }
+  void add_unknown_cuts(long count) {
+    if (count == 0) return;
+    add() << "searches did not find the cut times of " << count
+          << " extremals, which are taken for their conjugate times";
+  }
   [[nodiscard]] std::string text() const { return text_.str(); }
 
  private:

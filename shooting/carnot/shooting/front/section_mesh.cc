@@ -56,7 +56,7 @@ bool find_cut_times(const Dynamics& dynamics,
                  from,
                  UnitMomenta(dynamics, from, options.fixed, true),
                  {kHorizon * options.length,
-                  options.mod_angles,
+                  false,  // nor do angles agree by whole turns on the section
                   options.signs,
                   options.seed,
                   options.threads,
@@ -68,10 +68,7 @@ bool find_cut_times(const Dynamics& dynamics,
     FrontVertex& vertex = mesh.vertices[i];
     if (std::isnan(vertex.cut_time)) vertex.cut_time = (*values)[i].t;
   }
-  if (const long count = cuts.unknown(0); count > 0) {
-    omissions.add() << "searches did not find the cut times of " << count
-                    << " extremals, which are taken for their conjugate times";
-  }
+  omissions.add_unknown_cuts(cuts.unknown(0));
   return true;
 }
 
