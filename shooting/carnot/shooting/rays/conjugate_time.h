@@ -34,7 +34,8 @@ struct ConjugatePoint {
 };
 
 // The one of this order, counted with multiplicity; order 1 is the first. Cost: on the unicycle
-// some 13 steps with their tangents, of which 3 find the zero in the last one, and 10 without.
+// some 13 steps with their tangents, of which 3 find the zero in the last one; and flows without
+// tangents, which tell the number of steps.
 ConjugatePoint conjugate_point(const Ray& ray, double horizon, int order = 1);
 double conjugate_time(const Ray& ray, double horizon, int order = 1);
 
