@@ -93,6 +93,65 @@ TEST_F(DiscreteListTest, OnlyVerifiedOnesAreMeasuresOnceThereAreAny) {
   EXPECT_TRUE(pending.empty());
 }
 
+TEST_F(DiscreteListTest, IsKnownOnTheGridsThatItWasRefinedTo) {
+  list.add(wiggle(0.1));
+  EXPECT_EQ(list.refine(0, {wiggle(0.11, 64), wiggle(0.12, 128)}, extremals), 0U);
+  EXPECT_EQ(list.find(wiggle(0.1), extremals), 0U);
+  EXPECT_EQ(list.find(wiggle(0.11, 64), extremals), 0U);
+  EXPECT_EQ(list.find(wiggle(0.12, 128), extremals), 0U);
+  EXPECT_EQ(list.find(wiggle(0.12, 64), extremals), list.size());
+}
+
+// A coarse grid makes two of it.
+TEST_F(DiscreteListTest, WhatIsTheSameOnAFinerGridIsMerged) {
+  list.add(wiggle(0.1));
+  list.add(wiggle(0.3));
+  ASSERT_EQ(list.refine(0, {wiggle(0.2, 64)}, extremals), 0U);
+  EXPECT_EQ(list.refine(1, {wiggle(0.25, 64), wiggle(0.2, 128)}, extremals), 1U);
+  list.add(wiggle(0.4));
+  EXPECT_EQ(list.refine(2, {wiggle(0.2, 64)}, extremals), 0U);
+  EXPECT_EQ(list[2].fate, Fate::kMerged);
+  EXPECT_EQ(list.find(wiggle(0.4), extremals), 0U);
+}
+
+// (4 fine - coarse)/3 of the action on two grids is that of the curve up to h^4.
+TEST_F(DiscreteListTest, ForetellsTheAction) {
+  constexpr double kFourthOrder = 1e-2;  // of the error of the coarse grid; h^2 is 1e-3
+  constexpr double kSize = 0.3;
+  const auto lifted = [&](int intervals) {
+    Path path = wiggle(kSize, intervals);
+    for (int i = 0; i <= intervals; ++i) {
+      const double s = static_cast<double>(i) / intervals;
+      const double turned = s * std::sin(kPi * s) + 2 / kPi * (std::cos(kPi * s) - 1);
+      path.configuration(i)[2] = 0.5 * kSize * turned;  // z' = (x y' - y x') / 2
+    }
+    return path;
+  };
+  list.add(lifted(32));
+  EXPECT_FALSE(std::isfinite(list[0].uncertainty));
+  list.refine(0, {lifted(64)}, extremals);
+  const double exact = 0.5 + 0.25 * kSize * kSize * kPi * kPi;  // int (x'^2 + y'^2) / 2
+  const double error = std::abs(list[0].action - exact);
+  EXPECT_GT(error, 0);
+  EXPECT_LT(std::abs(list[0].estimate - exact), kFourthOrder * error);
+  EXPECT_TRUE(list[0].foretells(exact));
+  EXPECT_FALSE(list[0].foretells(exact + error));
+}
+
+TEST_F(DiscreteListTest, RivalsAreToldByFinerGrids) {
+  for (const double size : {0.1, 0.11, 0.5}) list.add(wiggle(size));
+  for (std::size_t i = 0; i < 3; ++i) {
+    list[i].estimate = list[i].action;
+    list[i].uncertainty = 0.01 * list[i].action;
+  }
+  EXPECT_THAT(list.beyond_rivals({0, 1, 2}, 1e300), testing::ElementsAre(2));
+  EXPECT_THAT(list.beyond_rivals({0, 1, 2}, 0.5 * list[0].action), testing::ElementsAre(0, 1, 2));
+  list[2].uncertainty = 1;
+  EXPECT_TRUE(list.beyond_rivals({0, 1, 2}, 1e300).empty()) << "it may be one";
+  list.add(wiggle(0.6));
+  EXPECT_TRUE(list.beyond_rivals({0, 3}, 1e300).empty()) << "not refined: it may be one";
+}
+
 TEST_F(DiscreteListTest, GivesUp) {
   for (const double size : {0.1, 0.5, 0.6}) list.add(wiggle(size));
   list[2].hits = 3;

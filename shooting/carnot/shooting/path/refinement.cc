@@ -123,19 +123,20 @@ Refinement refine(const BoundaryValueProblem& problem,
   // path. Where the changes hardly fall, finer grids follow a path that is not there.
   constexpr double kSlowest = 0.8;
   std::optional<double> last_change;
-  Path coarse = path;
-  while (2 * coarse.intervals <= options.max_intervals) {
+  for (;;) {
+    const Path& coarse = result.finer.empty() ? path : result.finer.back();
+    if (2 * coarse.intervals > options.max_intervals) break;
     std::optional<Path> fine = finer(problem, coarse);
     if (!fine) break;
     result.found = true;
     result.change = change_of(coarse, *fine);
     result.intervals = fine->intervals;
     result.path = extrapolated(coarse, *fine);
+    result.finer.push_back(std::move(*fine));
     result.settled = result.change <= options.enough;
     if (result.settled) break;
     if (last_change && result.change > kSlowest * *last_change) break;
     last_change = result.change;
-    coarse = std::move(*fine);
   }
   return result;
 }

@@ -12,6 +12,8 @@
 // start is taken back (homotopy.h).
 #pragma once
 
+#include <vector>
+
 #include "carnot/shooting/boundary_value_problem.h"
 #include "carnot/shooting/path/path.h"
 
@@ -23,11 +25,12 @@ struct RefinementOptions {
 };
 
 struct Refinement {
-  bool found = false;    // there is an extremal on a finer grid,
-  bool settled = false;  // and it changes by little
-  double change = 1;     // of the momenta in the last doubling, relative
-  Path path;             // on the last but one grid, extrapolated
-  int intervals = 0;     // of the last grid
+  bool found = false;       // there is an extremal on a finer grid,
+  bool settled = false;     // and it changes by little
+  double change = 1;        // of the momenta in the last doubling, relative
+  Path path;                // on the last but one grid, extrapolated
+  int intervals = 0;        // of the last grid
+  std::vector<Path> finer;  // the discrete extremals on the finer grids
 };
 
 Refinement refine(const BoundaryValueProblem& problem,

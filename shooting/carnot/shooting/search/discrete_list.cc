@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -35,13 +36,19 @@ std::size_t DiscreteList::find(const Path& path, const ExtremalList& extremals) 
     images.push_back(partner(problem_.dynamics.info, symmetry, path));
   }
   const double action = action_of(path);
+  const auto is_this = [&](const DiscreteExtremal& known, const Path& form, double of_form) {
+    if (form.intervals != path.intervals) return false;
+    if (std::abs(action - of_form) > kSame * std::abs(action)) return false;
+    if (known.fate == Fate::kExtremal && extremals[known.extremal].singular) return true;
+    return std::any_of(
+        images.begin(), images.end(), [&](const Path& image) { return same_nodes(form, image); });
+  };
   for (std::size_t i = 0; i < list_.size(); ++i) {
     const DiscreteExtremal& known = list_[i];
-    if (known.path.intervals != path.intervals) continue;
-    if (std::abs(action - known.action) > kSame * std::abs(action)) continue;
-    if (known.fate == Fate::kExtremal && extremals[known.extremal].singular) return i;
-    for (const Path& image : images) {
-      if (same_nodes(known.path, image)) return i;
+    if (known.fate == Fate::kMerged) continue;
+    if (is_this(known, known.path, known.action)) return i;
+    for (const DiscretePath& other : known.others) {
+      if (is_this(known, other.path, other.action)) return i;
     }
   }
   return list_.size();
@@ -50,6 +57,35 @@ std::size_t DiscreteList::find(const Path& path, const ExtremalList& extremals) 
 std::size_t DiscreteList::add(const Path& path) {
   list_.push_back({path, action_of(path)});
   return list_.size() - 1;
+}
+
+std::size_t DiscreteList::refine(std::size_t index,
+                                 const std::vector<Path>& finer,
+                                 const ExtremalList& extremals) {
+  std::vector<DiscretePath> forms;
+  std::size_t becomes = list_.size();
+  for (const Path& path : finer) {
+    becomes = find(path, extremals);
+    if (becomes < list_.size()) break;
+    forms.push_back({path, action_of(path)});
+  }
+  DiscreteExtremal& refined = list_[index];
+  if (becomes < list_.size()) {
+    forms.push_back({refined.path, refined.action});
+    refined.fate = Fate::kMerged;
+  } else {
+    becomes = index;
+  }
+  DiscreteExtremal& known = list_[becomes];
+  known.others.insert(known.others.end(), forms.begin(), forms.end());
+  if (becomes == index && !forms.empty()) {
+    const std::size_t last = forms.size() - 1;
+    const double coarse = last > 0 ? forms[last - 1].action : refined.action;
+    const double correction = (forms[last].action - coarse) / 3;
+    refined.estimate = forms[last].action + correction;
+    refined.uncertainty = std::abs(correction);
+  }
+  return becomes;
 }
 
 std::vector<std::size_t> DiscreteList::take_promising(std::vector<std::size_t>& pending) const {
@@ -72,6 +108,19 @@ std::vector<std::size_t> DiscreteList::take_promising(std::vector<std::size_t>& 
   }
   pending = rest;
   return promising;
+}
+
+std::vector<std::size_t> DiscreteList::beyond_rivals(const std::vector<std::size_t>& refined,
+                                                     double least) const {
+  for (const std::size_t i : refined) {
+    least = std::min(least, list_[i].estimate + list_[i].uncertainty);
+  }
+  const double highest = least + ExtremalList::kRival * std::abs(least);
+  std::vector<std::size_t> beyond;
+  std::copy_if(refined.begin(), refined.end(), std::back_inserter(beyond), [&](std::size_t i) {
+    return list_[i].estimate - list_[i].uncertainty > highest;
+  });
+  return beyond;
 }
 
 int DiscreteList::give_up(const std::vector<std::size_t>& pending) {

@@ -1,8 +1,13 @@
 // The discrete extremals that a search has seen, and what became of each.
 //
-// A discrete extremal that is known is not polished again. What it became counts as hit instead.
+// A discrete extremal that is known is not polished again. What it became counts as hit instead. It
+// is known on the grid that it was found on and on those that it was refined to, so that starts on
+// finer grids find it known. Of what a coarse grid parts in two, both halves become one on a finer
+// grid; they are merged there.
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <vector>
 
 #include "carnot/shooting/extremal/symmetry.h"
@@ -14,7 +19,13 @@ enum class Fate {
   kPending,   // it waits to be polished,
   kExtremal,  // it became an extremal of the list,
   kArtefact,  // polishing it gave nothing,
-  kGivenUp    // or its action is clearly more than the least and only that is wanted
+  kGivenUp,   // its action is clearly more than the least and only that is wanted,
+  kMerged     // or on a finer grid it is another one, which has its paths and hits
+};
+
+struct DiscretePath {
+  Path path;
+  double action = 0;
 };
 
 struct DiscreteExtremal {
@@ -24,6 +35,15 @@ struct DiscreteExtremal {
   std::size_t extremal = 0;  // the index of the one that it became
   int hits = 1;              // how often it was seen before it became one
   int descents = 0;          // how often the ways down from it were taken, on finer grids each
+  std::vector<DiscretePath> others;  // the same on finer grids, and what was merged into it
+  // The action without the error of the grids, and how much that may be off. Of two grids the
+  // combination (4 fine - coarse)/3 (refinement.h); a whole correction is allowed for.
+  double estimate = 0;
+  double uncertainty = std::numeric_limits<double>::infinity();
+
+  [[nodiscard]] bool foretells(double action_of_extremal) const {
+    return std::abs(action_of_extremal - estimate) <= uncertainty;
+  }
 };
 
 class DiscreteList {
@@ -44,9 +64,18 @@ class DiscreteList {
   [[nodiscard]] std::size_t find(const Path& path, const ExtremalList& extremals) const;
   // Adds a path that is new. Returns its index.
   std::size_t add(const Path& path);
+  // Remembers what it is on finer grids, from coarse to fine. Where one of these is known already,
+  // it is merged into the known one. Returns the index of the one that it is now.
+  std::size_t refine(std::size_t index,
+                     const std::vector<Path>& finer,
+                     const ExtremalList& extremals);
 
   // Takes out of `pending` those that may have the least action, as far as their grids tell.
   [[nodiscard]] std::vector<std::size_t> take_promising(std::vector<std::size_t>& pending) const;
+  // Those of `refined` that are no rivals of the best extremal, whose action is `least`, nor of
+  // each other, whatever their grids err by.
+  [[nodiscard]] std::vector<std::size_t> beyond_rivals(const std::vector<std::size_t>& refined,
+                                                       double least) const;
   // Gives these up. Returns how often they were seen.
   int give_up(const std::vector<std::size_t>& pending);
 

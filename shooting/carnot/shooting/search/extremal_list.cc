@@ -35,7 +35,6 @@ std::size_t ExtremalList::best() const {
 }
 
 Competition ExtremalList::competition() const {
-  constexpr double kRival = 0.03;  // above the least action, relative
   const double least = least_action();
   Competition competition;
   for (std::size_t i = 0; i < list_.size(); ++i) {

@@ -21,6 +21,9 @@ struct Competition {
 
 class ExtremalList {
  public:
+  // What is above the least action by no more than this, relative, is a rival of the best.
+  static constexpr double kRival = 0.03;
+
   // The verified mirror partners of an extremal, which may be the same path.
   using Partners = std::function<std::vector<Extremal>(const Extremal&)>;
 

@@ -19,6 +19,14 @@ constexpr long kFewSteps = 16;  // of the method over the whole time, at least
 // Which of two failures came further is told by the order of Reason.
 void come_to(Reason& furthest, Reason reason) { furthest = std::max(furthest, reason); }
 
+RefinementOptions refinement_of(const Path& path) {
+  constexpr int kDoublings = 8;  // of long ways, at least
+  RefinementOptions refinement;
+  refinement.enough = 4e-2;
+  refinement.max_intervals = std::max(refinement.max_intervals, kDoublings * path.intervals);
+  return refinement;
+}
+
 // Joins the knots on a refined path. Where a segment cannot be integrated, or magnifies too much
 // for Newton's method to keep its digits, they are set closer together.
 Outcome join(const BoundaryValueProblem& problem,
@@ -84,25 +92,36 @@ Outcome shoot_from(const BoundaryValueProblem& problem,
   return verify(problem, knots_of(problem, x, 1, kFewSteps), 2 * kFewSteps, options.tolerance);
 }
 
+Refinement refine_to_polish(const BoundaryValueProblem& problem, const Path& path) {
+  return refine(problem, refinement_of(path), path);
+}
+
 Outcome polish(const BoundaryValueProblem& problem,
                const GeodesicOptions& options,
                const Path& path) {
+  return polish(problem, options, path, refine_to_polish(problem, path));
+}
+
+Outcome polish(const BoundaryValueProblem& problem,
+               const GeodesicOptions& options,
+               const Path& path,
+               const Refinement& refined) {
   // From a grid that is fine enough Newton's method takes two or three iterations. Where it takes
   // more a finer grid, which is cheaper than the flow, comes first.
   constexpr std::array kPatience{4, 8, 12};
-  constexpr int kDoublings = 8;  // of long ways, at least
-  RefinementOptions refinement;
-  refinement.enough = 4e-2;
-  refinement.max_intervals = std::max(refinement.max_intervals, kDoublings * path.intervals);
+  RefinementOptions refinement = refinement_of(path);
   Outcome outcome{std::nullopt, Reason::kNotRefined};
+  Refinement further;
   for (const int patience : kPatience) {
-    const Refinement refined = refine(problem, refinement, path);
-    if (!refined.found) break;
-    Outcome joined = join(problem, options, refined, patience);
+    const bool first = patience == kPatience.front();
+    if (!first) further = refine(problem, refinement, path);
+    const Refinement& grid = first ? refined : further;
+    if (!grid.found) break;
+    Outcome joined = join(problem, options, grid, patience);
     come_to(outcome.reason, joined.reason);
     outcome.extremal = std::move(joined.extremal);
-    if (outcome.extremal || !refined.settled) break;
-    refinement.enough = 0.2 * refined.change;
+    if (outcome.extremal || !grid.settled) break;
+    refinement.enough = 0.2 * grid.change;
   }
   // With large multipliers knots may join what needs none.
   if (!outcome.extremal || outcome.extremal->geodesic.verification == Verification::kKnots) {

@@ -5,13 +5,23 @@
 #include "carnot/shooting/geodesic.h"
 #include "carnot/shooting/geodesic_options.h"
 #include "carnot/shooting/path/path.h"
+#include "carnot/shooting/path/refinement.h"
 #include "carnot/shooting/shoot/knots.h"
 
 namespace carnot::internal {
 
-// Refines the path (refinement.h) and joins the knots on it (multiple_shooting.h). There are as
-// many knots, and as many steps, as the tangent flow asks for. Where that fails, shoots along the
-// path.
+// The first half of polishing: the path on grids that are fine enough for shooting.
+Refinement refine_to_polish(const BoundaryValueProblem& problem, const Path& path);
+
+// The second half: joins the knots on the refined path (multiple_shooting.h). There are as many
+// knots, and as many steps, as the tangent flow asks for. Where that fails, refines further, and at
+// last shoots along the path.
+Outcome polish(const BoundaryValueProblem& problem,
+               const GeodesicOptions& options,
+               const Path& path,
+               const Refinement& refined);
+
+// Both halves.
 Outcome polish(const BoundaryValueProblem& problem,
                const GeodesicOptions& options,
                const Path& path);

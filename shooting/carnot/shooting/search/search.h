@@ -8,8 +8,10 @@
 
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "carnot/shooting/path/refinement.h"
 #include "carnot/shooting/search/deadline.h"
 #include "carnot/shooting/search/discrete_list.h"
 #include "carnot/shooting/search/drift_starts.h"
@@ -116,7 +118,14 @@ class Search {
   Polished absorb(const std::vector<RelaxedStart>& starts);
   // Adds the path to the discrete extremals where it is new. Else counts it as a hit.
   void note(const Path& path, std::vector<std::size_t>& fresh);
-  void polish_all(const std::vector<std::size_t>& indices, Polished& tally);
+  // Counts hits of a discrete extremal that is known.
+  void hit(DiscreteExtremal& known, int times);
+  // New discrete extremals on finer grids, by their indices; without those that become known ones.
+  using Refinements = std::vector<std::pair<std::size_t, Refinement>>;
+  Refinements refine_all(const std::vector<std::size_t>& indices, Polished& tally);
+  // Gives up those that the finer grids show to be no rivals of the best.
+  void give_up_beyond_rivals(Refinements& refined);
+  void polish_all(const Refinements& refined, Polished& tally);
   // Adds an extremal that a start led to, if it did, and counts the hit.
   void take(const std::optional<Extremal>& extremal);
   // The same, and remembers how far an attempt came that failed.
