@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
+#include <mutex>
 #include <set>
 
 #include "carnot/language/nearest.h"
@@ -28,20 +30,32 @@ bool is_scene_file(std::string_view name) {
 }
 
 const SceneEntry& find_scene(std::string_view name) {
+  static std::mutex guard;
+  static std::map<std::string, SceneEntry, std::less<>> made;
+  const std::lock_guard lock(guard);
+  if (const auto known = made.find(name); known != made.end()) return known->second;
   if (is_scene_file(name)) {
-    static std::map<std::string, SceneEntry> files;
-    const auto known = files.find(std::string(name));
-    if (known != files.end()) return known->second;
-    return files.emplace(name, text_entry(load_scene(std::string(name)))).first->second;
+    return made.emplace(name, text_entry(load_scene(std::string(name)))).first->second;
   }
-  std::vector<std::string> names;
-  for (const SceneEntry& entry : scene_registry()) {
-    if (entry.info.name == name) return entry;
-    names.push_back(entry.info.name);
+  for (const ListedScene& scene : listed_scenes()) {
+    if (scene.name == name) return made.emplace(name, scene.make()).first->second;
   }
+  const std::vector<std::string> names = scene_names();
   const std::string accepted = fmt::format("{}", fmt::join(names, ", "));
   if (name.empty()) refuse("SCENE", name, "no scene is given", accepted);
   refuse("SCENE", name, "no such scene" + language::suggestion(name, names), accepted);
+}
+
+std::vector<std::string> scene_names() {
+  std::vector<std::string> names;
+  for (const ListedScene& scene : listed_scenes()) names.emplace_back(scene.name);
+  return names;
+}
+
+bool is_of_program(const SceneEntry& entry) {
+  return std::any_of(listed_scenes().begin(), listed_scenes().end(), [&](const ListedScene& scene) {
+    return scene.name == entry.info.name && &find_scene(scene.name) == &entry;
+  });
 }
 
 std::string accepted_parameters(const SceneEntry& entry) {

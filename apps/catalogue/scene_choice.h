@@ -13,9 +13,16 @@ namespace carnot::apps {
 // Whether the name is that of a file with a scene.
 bool is_scene_file(std::string_view name);
 
-// A scene of the program, or of the file where the name ends in ".scene", which is read once.
-// Throws std::invalid_argument naming the known scenes, or what is wrong in the file.
+// A scene of the program, or of the file where the name ends in ".scene". Each is made once, and
+// stays where it is. Throws std::invalid_argument naming the known scenes, or what is wrong in the
+// file.
 const SceneEntry& find_scene(std::string_view name);
+
+// The names of the scenes of the program, in the order of `carnot scenes`.
+std::vector<std::string> scene_names();
+
+// Whether this is the entry of a scene of the program, and not of a file that gives one its name.
+bool is_of_program(const SceneEntry& entry);
 
 // One NAME=VALUE of a scene's parameter. Throws std::invalid_argument naming `option`, and what is
 // accepted, on an unknown name, a value that is no number or out of range.

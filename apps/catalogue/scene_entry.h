@@ -1,12 +1,13 @@
 // Scenes without their types: what the subcommands know of a scene.
 //
 // An entry is data and one function that makes a Dynamics: make_entry.h turns a scene into one,
-// scene_registry() lists them all.
+// listed_scenes() has them all.
 #pragma once
 
 #include <functional>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "carnot/dynamics.h"
@@ -42,7 +43,14 @@ struct SceneEntry {
   std::function<Dynamics(const ParameterValues&, const std::string& method)> make;
 };
 
-// All scenes, in the order in which `carnot scenes` lists them; made on first use.
-const std::vector<SceneEntry>& scene_registry();
+// A scene of the program before its entry is made. To read all scenes from text takes longer than
+// most geodesics, so only those that are asked for are made (find_scene() in scene_choice.h).
+struct ListedScene {
+  std::string_view name;
+  SceneEntry (*make)();
+};
+
+// All scenes of the program, in the order in which `carnot scenes` lists them.
+const std::vector<ListedScene>& listed_scenes();
 
 }  // namespace carnot::apps

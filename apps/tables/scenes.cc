@@ -39,11 +39,12 @@ struct ScenesCall {
   Destination destination;
 };
 
-// One table, its lines under headings: the kinds, in the order of the registry.
+// One table, its lines under headings: the kinds, in the order of the list of scenes.
 std::string overview() {
   std::vector<const SceneEntry*> entries;
   std::vector<std::string> kinds;
-  for (const SceneEntry& entry : scene_registry()) {
+  for (const std::string& name : scene_names()) {
+    const SceneEntry& entry = find_scene(name);
     entries.push_back(&entry);
     if (std::find(kinds.begin(), kinds.end(), entry.info.kind) == kinds.end()) {
       kinds.push_back(entry.info.kind);
@@ -142,7 +143,7 @@ void add_scenes(CLI::App& app, Invocation& invocation) {
     if (one != nullptr) {
       list.push_back(scene_json(*one));
     } else {
-      for (const SceneEntry& entry : scene_registry()) list.push_back(scene_json(entry));
+      for (const std::string& name : scene_names()) list.push_back(scene_json(find_scene(name)));
     }
     Result result;
     result.json = result_head(invocation.arguments);

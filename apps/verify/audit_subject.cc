@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "carnot/tableau/methods.h"
+#include "catalogue/scene_choice.h"
 
 namespace carnot::apps {
 namespace {
@@ -96,9 +97,7 @@ std::optional<AuditSubject> audit_subject(const SceneEntry& entry) {
   AuditSubject subject;
   subject.entry = &entry;
   // Another scene may have the name of one of the program.
-  const std::vector<SceneEntry>& program = scene_registry();
-  const bool known = std::any_of(
-      program.begin(), program.end(), [&](const SceneEntry& one) { return &one == &entry; });
+  const bool known = is_of_program(entry);
   const auto chosen = std::find_if(choices().begin(), choices().end(), [&](const Choice& choice) {
     return known && choice.scene == entry.info.name;
   });

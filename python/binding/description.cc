@@ -78,12 +78,6 @@ Json description(const Model& model) {
   return json;
 }
 
-std::vector<std::string> scene_names() {
-  std::vector<std::string> names;
-  for (const SceneEntry& entry : scene_registry()) names.push_back(entry.info.name);
-  return names;
-}
-
 }  // namespace
 
 py::str text_of(const Json& json) { return py::str(json_line(json)); }

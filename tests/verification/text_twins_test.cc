@@ -52,7 +52,8 @@ Dynamics twin_of(const std::string& name, const char* method) {
 enum class Which { kAll, kFree, kHolonomic };
 std::vector<std::string> names(Which which) {
   std::vector<std::string> result;
-  for (const SceneEntry& entry : apps::scene_registry()) {
+  for (const std::string& name : apps::scene_names()) {
+    const SceneEntry& entry = apps::find_scene(name);
     // More rods of the same kind: LongTrailers.
     if (entry.info.name == "trailer2" || entry.info.name == "trailer3") continue;
     const bool held = entry.holonomic > 0;
