@@ -61,7 +61,7 @@ Their ends are computed in quadruple precision, twice, and kept in $XDG_CACHE_HO
 
 With --boundary-value: sideways parking of the vehicle and of the unicycle by 1, and
 heisenberg-group to (1, 0, 1), from --starts blind starts of every solver: random paths, relaxed
-before newton, ceres or nlopt:NAME shoot, and random momenta. What counts is verified by an
+before ceres, newton or nlopt:NAME shoot, and random momenta. What counts is verified by an
 independent integration. With --peers also ipopt on the direct midpoint transcription, 50 intervals,
 and gsl-hybridsj on single shooting. Then, over 1, 2, 4, ... 64 starts, the share of --targets random
 targets that are at the least action: --plot draws that. Takes some minutes.

@@ -82,6 +82,7 @@ BoundarySolver from_momenta(const std::string& minimiser) {
     const double began = thread_seconds();
     ShootingOptions shooting;
     shooting.minimiser = minimiser;
+    shooting.near = minimiser != "ceres";
     shooting.steps = kSteps;
     const std::vector<double> p0 = momentum_start(problem, seed, i + 1);
     Knots knots = knots_of(problem, p0, kSegments, kSteps);
@@ -152,7 +153,7 @@ void add_to_curve(const std::vector<BoundaryTrial>& trials, std::vector<Boundary
 
 // False when stopped.
 bool run_curve(const BoundaryOptions& options, const Progress& progress, BoundaryResult& result) {
-  const BoundarySolver solver = from_paths("newton");
+  const BoundarySolver solver = from_paths(GeodesicOptions{}.minimiser);
   const double all = static_cast<double>(problems().size()) * options.targets;
   double done = 0;
   for (const BoundaryProblemEntry& problem : problems()) {

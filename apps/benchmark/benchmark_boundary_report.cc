@@ -82,7 +82,7 @@ bool has_grids(const BoundaryResult& result) {
 }
 
 constexpr const char* kCurveTitle =
-    "Random targets, relaxed paths and newton: targets at the least action that 64 starts find";
+    "Random targets, relaxed paths and ceres: targets at the least action that 64 starts find";
 
 }  // namespace
 

@@ -51,7 +51,7 @@ void add_search_options(CLI::App& app, SearchOptions& options) {
   add("--minimiser",
       options.minimiser,
       "NAME",
-      "newton, ceres, nlopt or nlopt:NAME, NAME one of slsqp, lbfgs, mlsl, isres, crs (newton)");
+      "ceres, newton, nlopt or nlopt:NAME, NAME one of slsqp, lbfgs, mlsl, isres, crs (ceres)");
   add("--time-limit", options.time_limit, "SECONDS", "end with what was found by then (none)");
   app.add_flag("--mod-angles", options.mod_angles, "angles agree modulo their periods");
   add_limit_options(app, options.asked);

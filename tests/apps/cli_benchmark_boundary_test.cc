@@ -61,7 +61,7 @@ TEST(BoundaryBenchmark, HoldsItsContract) {
     EXPECT_GT(row["seconds_per_start"], 0);
     EXPECT_EQ(row["seconds_per_success"].is_null(), row["solved"] == 0);
     EXPECT_EQ(row["best_action_error"].is_null(), row["solved"] == 0);
-    if (row["solver"] == "newton" && row["start"] == "path") by_default += row["solved"].get<int>();
+    if (row["solver"] == "ceres" && row["start"] == "path") by_default += row["solved"].get<int>();
   }
   EXPECT_EQ(ways.size(), 14);
   EXPECT_EQ(ways.count("nlopt:isres momentum"), 1);

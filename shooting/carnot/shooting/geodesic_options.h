@@ -22,8 +22,8 @@ struct GeodesicOptions {
   double tolerance = 1e-10;
   // The same in the units of the coordinates; takes the place of `tolerance` where it is given.
   std::optional<double> absolute_tolerance;
-  std::string minimiser = "newton";  // newton, ceres, nlopt, nlopt:NAME (see minimisers())
-  bool mod_angles = false;           // angles need to agree modulo their periods only
+  std::string minimiser = "ceres";  // newton, ceres, nlopt, nlopt:NAME (see minimisers())
+  bool mod_angles = false;          // angles need to agree modulo their periods only
   // p0 to start from instead of paths, with q_j(0) for free coordinates; empty: none.
   std::vector<double> guess;
   // Whether a strictly abnormal curve, which has no p0, is listed where it is shorter than all

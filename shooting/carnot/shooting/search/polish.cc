@@ -40,7 +40,8 @@ Outcome join(const BoundaryValueProblem& problem,
   ShootingOptions shooting;
   shooting.minimiser = options.minimiser;
   shooting.max_growth = kMaxGrowth;
-  if (options.minimiser == "newton") shooting.max_iterations = patience;
+  const bool local = options.minimiser == "newton" || options.minimiser == "ceres";
+  if (local) shooting.max_iterations = patience;
   shooting.steps = std::max<long>(kFewSteps, refined.intervals / kIntervalsPerStep);
   Reason furthest = Reason::kNone;
   int segments = std::max(kSegments, refined.intervals / kIntervalsPerSegment);
@@ -145,6 +146,7 @@ Outcome polish(const BoundaryValueProblem& problem,
     for (const long steps : {kFewSteps, 4 * kFewSteps}) {
       Knots joined = knots;
       shooting.minimiser = way;
+      shooting.near = way != "ceres";
       shooting.steps = steps;
       if (!shoot(problem, shooting, joined).converged) {
         come_to(furthest, Reason::kNotJoined);

@@ -18,18 +18,25 @@ namespace carnot::internal {
 
 struct ShootingOptions {
   std::string minimiser = "newton";
-  int max_iterations = 30;   // NLopt may take twice as many evaluations
-  long steps = 32;           // of the method over the whole time; at least one a segment
-  double tolerance = 1e-9;   // Euclidean norm of the scaled jumps
-  double max_growth = 1e12;  // of newton: it stops where a scaled tangent flow is larger
+  int max_iterations = 30;  // NLopt may take twice as many evaluations
+  long steps = 32;          // of the method over the whole time; at least one a segment
+  double tolerance = 1e-9;  // Euclidean norm of the scaled jumps
+  // Whether the knots should be nearly joined. Then newton and ceres give up where three iterations
+  // make the jumps hardly smaller, and ceres begins with full steps.
+  bool near = true;
+  double max_growth = 1e12;  // newton and ceres stop where a scaled tangent flow is larger
 };
 
 struct Shooting {
   bool converged = false;
   double residual = 0;  // Euclidean norm of the scaled jumps
   int iterations = 0;
-  double growth = 0;  // largest entry of the scaled tangent flows; of newton only
+  // Largest entry of the scaled tangent flows: of newton where it ends, of ceres where it begins.
+  double growth = 0;
 };
+
+// The jumps over those three iterations before, above which `near` knots are given up.
+inline constexpr double kHardlySmaller = 0.3;
 
 // Improves `knots` in place. q(0) stays fixed.
 Shooting shoot(const BoundaryValueProblem& problem, const ShootingOptions& options, Knots& knots);

@@ -35,13 +35,12 @@ class Banded {
         return false;
       }
       if (!with_matrix) continue;
+      growth_ = std::max(growth_, equations_.growth(i, jacobian));
       for (int r = 0; r < equations_.residuals(i); ++r) {
         for (int c = i == 0 ? n_ : 0; c < 2 * n_; ++c) {
           const int unknown = row - n_ + c;
           const int place = equations_.place(unknown) % (2 * n_);
-          const double entry = block_[r * 2 * n_ + place] * equations_.scale(place);
-          growth_ = std::max(growth_, std::abs(entry));
-          matrix_(row + r, unknown) = entry;
+          matrix_(row + r, unknown) = block_[r * 2 * n_ + place] * equations_.scale(place);
         }
         if (i + 1 < knots.segments) matrix_(row + r, row + n_ + r) = -1;
       }
@@ -76,7 +75,6 @@ Shooting shoot_with_newton(const BoundaryValueProblem& problem,
                            Knots& knots) {
   constexpr double kShortestStep = 1.0 / 32;
   constexpr int kTrials = 3;
-  constexpr double kContracts = 0.3;
   const ShootingEquations equations(problem, knots, options.steps);
   Banded system(equations, knots);
   std::vector<double> residual;
@@ -90,8 +88,8 @@ Shooting shoot_with_newton(const BoundaryValueProblem& problem,
   std::vector<double> simplified;
   while (result.residual > options.tolerance && result.iterations < options.max_iterations) {
     if (result.growth > options.max_growth) break;
-    // The knots are far from joined and hardly come nearer.
-    if (result.iterations == kTrials && result.residual > kContracts * first) break;
+    const bool hardly_smaller = result.residual > kHardlySmaller * first;
+    if (options.near && result.iterations == kTrials && hardly_smaller) break;
     ++result.iterations;
     step = residual;
     if (!system.factor()) break;

@@ -50,6 +50,17 @@ bool ShootingEquations::evaluate(
   return true;
 }
 
+double ShootingEquations::growth(int i, const double* jacobian) const {
+  double growth = 0;
+  for (int c = i == 0 ? dof_ : 0; c < 2 * dof_; ++c) {
+    const int at = place((2 * i - 1) * dof_ + c) % (2 * dof_);
+    for (int r = 0; r < residuals(i); ++r) {
+      growth = std::max(growth, std::abs(jacobian[r * 2 * dof_ + at] * scale_[at]));
+    }
+  }
+  return growth;
+}
+
 bool ShootingEquations::complete(Knots& knots) const {
   const int last = segments_ - 1;
   std::copy(knots.at(last), knots.at(last) + 2 * dof_, knots.at(segments_));

@@ -29,6 +29,9 @@ class ShootingEquations {
   [[nodiscard]] bool evaluate(
       int i, const double* z, const double* next, double* residual, double* jacobian) const;
 
+  // The largest derivative by an unknown in a Jacobian of segment i, in units of both scales.
+  [[nodiscard]] double growth(int i, const double* jacobian) const;
+
   [[nodiscard]] double scale(int row) const { return scale_[row]; }
 
   // Number of unknowns, and where unknown c stands in Knots::z.
