@@ -105,17 +105,9 @@ class StopWhenJoined final : public ceres::IterationCallback {
 };
 
 ceres::Solver::Options solver_options(const BoundaryValueProblem& problem,
-                                      const ShootingOptions& options,
-                                      int segments) {
-  // A dense matrix keeps its digits, and costs the third power of the number of segments. Where
-  // tangents grow there are hundreds, each of which grows little.
-  constexpr int kFewSegments = 16;
+                                      const ShootingOptions& options) {
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;
-  if (segments > kFewSegments) {
-    solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-    solver.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
-  }
   solver.max_num_iterations = options.max_iterations;
   solver.function_tolerance = 0;
   solver.gradient_tolerance = 0;
@@ -178,7 +170,7 @@ Shooting shoot_with_ceres(const BoundaryValueProblem& problem,
   }
   hold_start(problem, knots, joined);
   StopWhenJoined stop(options);
-  ceres::Solver::Options solver = solver_options(problem, options, knots.segments);
+  ceres::Solver::Options solver = solver_options(problem, options);
   solver.callbacks.push_back(&stop);
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &joined, &summary);

@@ -3,7 +3,8 @@
 // Each flow is short, so |dz(t_{i+1})/dz(t_i)| stays moderate where single shooting sees up to
 // 1e16. One segment is single shooting. The zero of the equations (shooting_equations.h) is found
 //   newton               by Newton's method on the banded system, with damping,
-//   ceres                by Levenberg-Marquardt on their sum of squares,
+//   ceres                by Levenberg-Marquardt on their sum of squares; by Newton's method beyond
+//                        16 segments, where its dense equations cost too much,
 //   nlopt, nlopt:slsqp   by NLopt's SLSQP with the jumps as equality constraints,
 //   nlopt:lbfgs          by L-BFGS on the sum of squares, then SLSQP,
 //   nlopt:mlsl, nlopt:isres, nlopt:crs   by a global search of a box around p(0), then SLSQP.
