@@ -92,7 +92,6 @@ class StopWhenJoined final : public ceres::IterationCallback {
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     if (summary.iteration == 0) first_ = summary.cost;
     if (summary.cost <= cost_) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
-    constexpr int kTrials = 3;
     const bool hardly_falls = near_ && summary.cost > kHardlySmaller * kHardlySmaller * first_;
     return summary.iteration == kTrials && hardly_falls ? ceres::SOLVER_ABORT
                                                         : ceres::SOLVER_CONTINUE;

@@ -22,8 +22,8 @@ struct ShootingOptions {
   int max_iterations = 30;  // NLopt may take twice as many evaluations
   long steps = 32;          // of the method over the whole time; at least one a segment
   double tolerance = 1e-9;  // Euclidean norm of the scaled jumps
-  // Whether the knots should be nearly joined. Then newton and ceres give up where three iterations
-  // make the jumps hardly smaller, and ceres begins with full steps.
+  // Whether the knots should be nearly joined. Then newton and ceres give up where kTrials
+  // iterations make the jumps hardly smaller, and ceres begins with full steps.
   bool near = true;
   double max_growth = 1e12;  // newton and ceres stop where a scaled tangent flow is larger
 };
@@ -36,7 +36,9 @@ struct Shooting {
   double growth = 0;
 };
 
-// The jumps over those three iterations before, above which `near` knots are given up.
+// Knots that should be near are given up where after so many iterations the jumps are more than
+// this part of the first ones.
+inline constexpr int kTrials = 3;
 inline constexpr double kHardlySmaller = 0.3;
 
 // Improves `knots` in place. q(0) stays fixed.

@@ -74,7 +74,6 @@ Shooting shoot_with_newton(const BoundaryValueProblem& problem,
                            const ShootingOptions& options,
                            Knots& knots) {
   constexpr double kShortestStep = 1.0 / 32;
-  constexpr int kTrials = 3;
   const ShootingEquations equations(problem, knots, options.steps);
   Banded system(equations, knots);
   std::vector<double> residual;
