@@ -13,6 +13,7 @@
 
 #include "carnot/numerics/pack.h"
 #include "carnot/numerics/scalar.h"
+#include "carnot/numerics/second_jet.h"
 
 namespace carnot {
 
@@ -92,6 +93,10 @@ T stumpff(const T& s) {
       return (inverse_factorial - stumpff<k - 2>(s)) / s;
     }
   }
+}
+template <int k, class T, int N>
+SecondJet<T, N> stumpff(const SecondJet<T, N>& s) {
+  return lifted(s, [](const auto& x) { return stumpff<k>(x); });
 }
 
 }  // namespace carnot

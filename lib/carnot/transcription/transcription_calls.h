@@ -1,12 +1,14 @@
 // A scene behind the function pointers of transcription_functions.h.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <type_traits>
 
 #include "carnot/numerics/gradient.h"
 #include "carnot/numerics/pack.h"
+#include "carnot/numerics/second_jet.h"
 #include "carnot/system/index_one_system.h"
 #include "carnot/system/optimal_control.h"
 #include "carnot/system/velocity_constraints.h"
@@ -155,54 +157,23 @@ void add_lagrangian(const VelocityConstraints<Scene>& system,
   }
 }
 
-template <class Scene>
-void lagrangian_hessian(const VelocityConstraints<Scene>& system,
-                        const double* q,
-                        const double* v,
-                        const double* lambda,
-                        double* l_qq) {
+// l_qq, n x n, at a point or, with packs N for numbers, at as many side by side.
+template <class Scene, class N>
+std::array<N, Scene::kDof * Scene::kDof> lagrangian_hessian(
+    const VelocityConstraints<Scene>& system, const N* q, const N* v, const N* lambda) {
   constexpr int n = Scene::kDof;
-  using T = Jet<Jet<double, n>, n>;
-  const Vector<T, n> x = seeded(seeded(Vector<double, n>(view<n>(q))));
-  for (int d = 0; d < n * n; ++d) l_qq[d] = 0;
-  add_lagrangian(system, x, v, lambda, [&](const T& entry, double weight) {
-    for (int d = 0; d < n; ++d) {
-      for (int e = 0; e < n; ++e) l_qq[d * n + e] += weight * entry.v[d].v[e];
-    }
+  using T = SecondJet<N, n>;
+  Vector<T, n> x;
+  for (int j = 0; j < n; ++j) x[j] = T(q[j], j);
+  std::array<N, T::kPairs> sum{};
+  add_lagrangian(system, x, v, lambda, [&](const T& entry, const N& weight) {
+    for (int pair = 0; pair < T::kPairs; ++pair) sum[pair] += weight * entry.w[pair];
   });
-}
-
-// The same of points side by side, column by column: Jets of Jets of packs in all directions at
-// once would fill the stack.
-template <class Scene>
-void packed_lagrangian_hessian(const VelocityConstraints<Scene>& system,
-                               const double* q,
-                               const double* v,
-                               const double* lambda,
-                               double* l_qq) {
-  constexpr int n = Scene::kDof;
-  constexpr int k = Scene::kMultipliers;
-  constexpr int kLanes = kTranscriptionLanes;
-  using P = Pack<kLanes>;
-  using Inner = Jet<P, 1>;
-  using T = Jet<Inner, n>;
-  std::array<P, n> velocity;
-  std::array<P, k> multipliers;
-  for (int j = 0; j < n; ++j) velocity[j] = P::load(v + j * kLanes);
-  for (int i = 0; i < k; ++i) multipliers[i] = P::load(lambda + i * kLanes);
-  for (int e = 0; e < n; ++e) {
-    Vector<Inner, n> at;
-    for (int j = 0; j < n; ++j) {
-      const P value = P::load(q + j * kLanes);
-      at[j] = j == e ? Inner(value, 0) : Inner(value);
-    }
-    std::array<P, n> column{};
-    const auto add = [&](const T& entry, const P& weight) {
-      for (int d = 0; d < n; ++d) column[d] += weight * entry.v[d].v[0];
-    };
-    add_lagrangian(system, seeded(at), velocity.data(), multipliers.data(), add);
-    for (int d = 0; d < n; ++d) column[d].store(l_qq + (d * n + e) * kLanes);
+  std::array<N, n * n> l_qq;
+  for (int i = 0, pair = 0; i < n; ++i) {
+    for (int j = 0; j <= i; ++j, ++pair) l_qq[i * n + j] = l_qq[j * n + i] = sum[pair];
   }
+  return l_qq;
 }
 
 template <class B>
@@ -213,7 +184,8 @@ void transcription_hessian(const void* opaque,
                            const GaugeUnits& units,
                            double* l_qq) {
   with_units(B::from(opaque).system, units, [&](const auto& system) {
-    lagrangian_hessian(system, q, v, lambda, l_qq);
+    const auto entries = lagrangian_hessian(system, q, v, lambda);
+    std::copy(entries.begin(), entries.end(), l_qq);
   });
 }
 
@@ -224,8 +196,21 @@ void transcription_packed_hessian(const void* opaque,
                                   const double* lambda,
                                   const GaugeUnits& units,
                                   double* l_qq) {
+  using P = Pack<kTranscriptionLanes>;
+  const auto packs = [](const double* from, auto& to) {
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] = P::load(from + i * kTranscriptionLanes);
+  };
+  std::array<P, B::n> at;
+  std::array<P, B::n> velocity;
+  packs(q, at);
+  packs(v, velocity);
   with_units(B::from(opaque).system, units, [&](const auto& system) {
-    packed_lagrangian_hessian(system, q, v, lambda, l_qq);
+    using Scene = std::decay_t<decltype(system.scene())>;
+    std::array<P, Scene::kMultipliers> multipliers;
+    packs(lambda, multipliers);
+    const auto entries = lagrangian_hessian(system, at.data(), velocity.data(), multipliers.data());
+    for (std::size_t i = 0; i < entries.size(); ++i)
+      entries[i].store(l_qq + i * kTranscriptionLanes);
   });
 }
 
