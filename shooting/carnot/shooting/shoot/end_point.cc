@@ -133,7 +133,24 @@ void reduce(const BoundaryValueProblem& problem,
   const Eigen::MatrixXd kernel = kernel_of(Units(problem, x), tangent, kGenerous);
   if (kernel.cols() == 0) return;
   const Eigen::Map<const Eigen::VectorXd> p(x.data(), static_cast<Eigen::Index>(x.size()));
-  const Eigen::VectorXd least = p - kernel * (kernel.transpose() * p);
+  const Eigen::VectorXd without = p - kernel * (kernel.transpose() * p);
+  const std::vector<double> least(without.data(), without.data() + without.size());
+  const auto place = [&](const std::vector<double>& unknowns, double share) {
+    std::vector<double> z = phase_point(problem, unknowns);
+    const StepPlan plan = StepPlan::equal(0, share * problem.time, steps);
+    (void)problem.dynamics.flow(plan, z);
+    return z;
+  };
+  const int n = problem.dynamics.dof;
+  const std::vector<double> before = place(x, kOnTheWay);
+  const double extent = largest_difference(before.data(), problem.from.data(), n);
+  // Momenta of a kernel hardly move the end. On a stiff path that is so to first order only, and
+  // Newton's method would come back by long flows, if at all. Of 351 reductions in the tests all
+  // 175 that arrived began nearer to the target than the start is, and 137 of the others did not.
+  const double distance = distance_between_ends(problem);
+  const std::vector<double> end = place(least, 1);
+  const double unit = length_per_momentum(problem, end.data() + n);
+  if (!(miss(problem, end.data(), unit) <= (distance > 0 ? distance : extent))) return;
   // A generous rank comes first: it leaves the kernel alone. Along the kernel the end hardly moves,
   // and Newton's method would go back along it.
   constexpr double kSlack = 100;
@@ -142,21 +159,12 @@ void reduce(const BoundaryValueProblem& problem,
   bool arrives = false;
   for (const double rank : {kGenerous, kRankRoundOff}) {
     if (arrives) break;
-    trial.assign(least.data(), least.data() + least.size());
+    trial = least;
     there = tangent;
     arrives = correct(problem, steps, tolerance, trial, there, rank) <= kSlack * tolerance;
   }
   if (!arrives) return;
-  const auto on_the_way = [&](const std::vector<double>& unknowns) {
-    std::vector<double> z = phase_point(problem, unknowns);
-    const StepPlan plan = StepPlan::equal(0, kOnTheWay * problem.time, steps);
-    (void)problem.dynamics.flow(plan, z);
-    return z;
-  };
-  const std::vector<double> before = on_the_way(x);
-  const std::vector<double> after = on_the_way(trial);
-  const int n = problem.dynamics.dof;
-  const double extent = largest_difference(before.data(), problem.from.data(), n);
+  const std::vector<double> after = place(trial, kOnTheWay);
   if (!(largest_difference(before.data(), after.data(), n) <= kSamePath * extent)) return;
   x = trial;
   tangent = there;
