@@ -58,7 +58,8 @@ class Method {
   void eliminate(const std::vector<double>& direction);
   // The longest step that leaves x positive.
   [[nodiscard]] double longest(const std::vector<double>& x, const std::vector<double>& step) const;
-  bool advance(const std::vector<double>& direction);
+  // Moves on, and `worst` from what evaluate() says before to what it says after that.
+  bool advance(const std::vector<double>& direction, double& worst);
   // Whether the matrix has as many negative eigenvalues as F_d has multipliers.
   [[nodiscard]] bool has_right_inertia();
   void assemble();
@@ -192,14 +193,13 @@ double Method::longest(const std::vector<double>& x, const std::vector<double>& 
   return longest;
 }
 
-bool Method::advance(const std::vector<double>& direction) {
+bool Method::advance(const std::vector<double>& direction, double& worst) {
   constexpr double kShortest = 1.0 / 64;
   // A residual that grows more, and is not small, is of a step into nowhere. It must be let grow
   // from round-off: for Bryson and Denham's problem, where mu was lowered after the equations had
   // been solved, no step was good enough otherwise.
   constexpr double kWorse = 10;
   constexpr double kSmall = 1e-2;
-  const double before = evaluate(false);
   const LimitedPath start = limited_;
   const bool walled = in_one_chart(problem_.dynamics, start.path);
   const double primal = longest(start.sigma, sigma_step_);
@@ -213,7 +213,10 @@ bool Method::advance(const std::vector<double>& direction) {
     if (walled && !in_one_chart(problem_.dynamics, limited_.path)) continue;
     set_walls();
     const double after = evaluate(false);
-    if (after <= std::max(kWorse * before, kSmall)) return true;
+    if (after <= std::max(kWorse * worst, kSmall)) {
+      worst = after;
+      return true;
+    }
   }
   limited_ = start;
   set_walls();
@@ -268,8 +271,8 @@ InteriorPoint Method::run() {
   constexpr double kPower = 1.5;
   InteriorPoint result;
   start();
+  double worst = evaluate(false);
   while (result.iterations < options_.max_iterations) {
-    const double worst = evaluate(false);
     result.residual = std::max(worst, complementarity());
     result.mu = mu_;
     if (!std::isfinite(result.residual)) break;
@@ -291,7 +294,7 @@ InteriorPoint Method::run() {
     std::vector<double> direction = residual_;
     matrix_.substitute(direction);
     eliminate(direction);
-    if (!advance(direction)) break;
+    if (!advance(direction, worst)) break;
   }
   fill_momenta(problem_.dynamics, h_, limited_.path);
   return result;

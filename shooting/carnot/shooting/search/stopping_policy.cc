@@ -37,8 +37,7 @@ constexpr int kMinEasy = 12;
 // of the time.
 constexpr int kMaxStarts = 480;
 // The same where a target is near. Only targets so near that round-off parts their extremals into
-// many get that far, and a start takes long there: a vehicle to (0, 1e-10, 0, 0) takes 74 s with
-// 480.
+// many get that far, and a start takes long there: a vehicle to (0, 1e-10, 0, 0) takes 5 s with 480.
 constexpr int kMaxNear = 240;
 // So many times the limit of starts do not count where they are blocked: at most three times the
 // limit are drawn. Of 60 random targets of bicycle 44, 50 and 51 are reached with 0, 2 and 4, in
