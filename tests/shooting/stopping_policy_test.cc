@@ -29,6 +29,16 @@ TEST(StoppingPolicy, BlockedStartsAreMadeUpFor) {
   EXPECT_EQ(policy.left({0, 0, 100 * limit, 0}), 3 * limit) << "up to twice the limit";
 }
 
+// Unless somebody asked for all of them.
+TEST(StoppingPolicy, StartsThatOnlyTellOfRoundOffAreInVain) {
+  const StoppingPolicy policy(options_for(1), true, false);
+  EXPECT_FALSE(policy.are_in_vain({100, 100, 0, 0, 0}));
+  EXPECT_FALSE(policy.are_in_vain({100, 100, 0, 0, 10}));
+  EXPECT_TRUE(policy.are_in_vain({100, 100, 0, 0, 60}));
+  EXPECT_FALSE(
+      StoppingPolicy(options_for(1, false, 300), true, false).are_in_vain({100, 100, 0, 0, 60}));
+}
+
 TEST(StoppingPolicy, NearTargetsGetFewerStarts) {
   const StoppingPolicy far(options_for(1), true, false);
   const StoppingPolicy near(options_for(1), true, true);

@@ -63,6 +63,7 @@ bool Search::run() {
       const bool found_lower = shoots_below() && shoot_below();
       if (!found_lower && !descends_ && settled()) break;
     }
+    if (extremals_.empty() && policy_.are_in_vain(tally_)) break;
     if (is_late()) break;
     if (!goes_on(policy_.share(tally_))) return false;
     if (by_paths && descends_ && descents < kMaxDescents) {
@@ -137,6 +138,7 @@ void Search::hit(DiscreteExtremal& known, int times) {
   if (known.fate == Fate::kExtremal) extremals_.hit(known.extremal, times);
   if (known.fate == Fate::kExtremal || known.fate == Fate::kGivenUp) tally_.converged += times;
   if (known.fate == Fate::kPending || known.fate == Fate::kGivenUp) known.hits += times;
+  if (known.fate == Fate::kTooRough) tally_.rough += times;
 }
 
 Search::Polished Search::absorb(const std::vector<RelaxedStart>& starts) {
@@ -204,6 +206,12 @@ void Search::polish_all(const Refinements& refined, Polished& tally) {
   for (std::size_t i = 0; i < refined.size(); ++i) {
     DiscreteExtremal& discrete = discrete_[refined[i].first];
     furthest_ = std::max(furthest_, polished[i].reason);
+    // No finer grid helps there: with them sideways parking to 1e-22 took 15 s to say so, not 7.
+    if (polished[i].reason == Reason::kBeyondDouble) {
+      discrete.fate = Fate::kTooRough;
+      tally_.rough += discrete.hits;
+      continue;
+    }
     if (!polished[i].extremal) {
       discrete.fate = Fate::kArtefact;
       discrete.others.clear();

@@ -37,7 +37,8 @@ constexpr int kMinEasy = 12;
 // of the time.
 constexpr int kMaxStarts = 480;
 // The same where a target is near. Only targets so near that round-off parts their extremals into
-// many get that far, and a start takes long there: a vehicle to (0, 1e-10, 0, 0) takes 5 s with 480.
+// many get that far, and a start takes long there: a vehicle to (0, 1e-10, 0, 0) takes 5 s with
+// 480.
 constexpr int kMaxNear = 240;
 // So many times the limit of starts do not count where they are blocked: at most three times the
 // limit are drawn. Of 60 random targets of bicycle 44, 50 and 51 are reached with 0, 2 and 4, in
@@ -54,6 +55,9 @@ constexpr int kEnoughHits = 3;
 // targets of falling-cat and one of vehicle are missed, in 0.83 of the time; without, one less of
 // falling-cat, in 1.41.
 constexpr int kSureHits = 20;
+// So many starts that lead to extremals which double precision cannot verify, and none to another,
+// say that there is no other. In no search of the tests one was found after the first of these.
+constexpr int kSurelyRough = 20;
 // What is enough where there is drift. Its starts find minima only, and the search has to know that
 // the least of them is the least. With 3 and with 8 nothing changes on these 60.
 constexpr int kEnoughDriftHits = 5;
@@ -105,6 +109,10 @@ int StoppingPolicy::round(const SearchTally& tally) const {
 double StoppingPolicy::share(const SearchTally& tally) const {
   const double share = static_cast<double>(tally.drawn) / (tally.drawn + left(tally));
   return sweeps_ > 0 ? 0.5 * share : share;
+}
+
+bool StoppingPolicy::are_in_vain(const SearchTally& tally) const {
+  return !given_ && tally.rough >= kSurelyRough;
 }
 
 bool StoppingPolicy::may_end(const SearchTally& tally) const {

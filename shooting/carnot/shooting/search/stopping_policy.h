@@ -18,6 +18,7 @@ struct SearchTally {
   int drawn = 0;      // of the sequence of starts
   int blocked = 0;    // that ran into a singularity of the coordinates
   int converged = 0;  // that led to an extremal, or to one that was given up
+  int rough = 0;      // of them, that led to what round-off keeps from its end
 };
 
 class StoppingPolicy {
@@ -43,6 +44,8 @@ class StoppingPolicy {
   // The fraction done, before the sweeps.
   [[nodiscard]] double share(const SearchTally& tally) const;
 
+  // Whether more starts would only say again that round-off is too large. Nothing was found.
+  [[nodiscard]] bool are_in_vain(const SearchTally& tally) const;
   // Whether so many starts may be enough, whatever they led to.
   [[nodiscard]] bool may_end(const SearchTally& tally) const;
   // Whether they are. The best extremal is known to be a local minimum.
