@@ -200,6 +200,7 @@ std::size_t LimitedSearch::rivals(const std::vector<Candidate*>& open,
   const auto count = static_cast<std::size_t>(options_.count);
   if (options_.all || open.size() + known.size() <= count) return open.size();
   std::vector<double> actions;
+  actions.reserve(open.size() + known.size());
   for (const Geodesic& geodesic : known) actions.push_back(geodesic.action);
   for (const Candidate* candidate : open) actions.push_back(candidate->action);
   std::sort(actions.begin(), actions.end());
