@@ -7,7 +7,8 @@
 //   (x y)_ij = x_ij y + x y_ij + x_i y_j + x_j y_i,      f(x)_ij = f'(x) x_ij + f''(x) x_i x_j.
 //
 // f' and f'' are those that Jets of one direction find, so that no derivative is written down
-// again. The Hessian of a Lagrangian of the vehicle takes a quarter of the time that it takes on
+// again. On eight scenes the derivatives of a discrete Lagrangian, of both orders, take 0.36
+// (satellite) to 0.8 (engel) of the time that they take where those of second order are found on
 // Jets of Jets, column by column.
 //
 // T is a real type or a Pack.
