@@ -108,8 +108,8 @@ std::vector<std::vector<double>> find_mirrors(int n, Samples& samples) {
   }
   std::vector<std::vector<double>> mirrors;
   for (std::size_t g = 1; g < group.size(); ++g) {
-    std::vector<double> signs;
-    for (int i = 0; i < n; ++i) signs.push_back((group[g] >> i & 1u) != 0 ? -1.0 : 1.0);
+    std::vector<double> signs(n);
+    for (int i = 0; i < n; ++i) signs[i] = (group[g] >> i & 1u) != 0 ? -1.0 : 1.0;
     mirrors.push_back(std::move(signs));
   }
   return mirrors;

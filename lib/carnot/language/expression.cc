@@ -156,6 +156,7 @@ Expression Graph::sum(std::span<const Expression> expressions) {
   if (constant == 0) {
     if (const std::vector<Part> common = common_factors(terms); !common.empty()) {
       std::vector<Expression> rest;
+      rest.reserve(terms.size());
       for (const Part& part : terms) rest.push_back(divided(part, common));
       return product(product_of(common, 1), sum(rest));
     }

@@ -138,7 +138,7 @@ class Formulator {
     }
     const Formula& kinetic = *scene_.kinetic;
     const SymbolicVector slopes = gradient(graph_, kinetic.expression, kVelocity.first, n);
-    const SymbolicMatrix m = jacobian(graph_, slopes, kVelocity.first, n);
+    SymbolicMatrix m = jacobian(graph_, slopes, kVelocity.first, n);
     const bool quadratic = !depends(m, kVelocity);
     if (quadratic && !without(kinetic.expression, kVelocity).is_zero()) {
       fail(kinetic.place,
@@ -522,7 +522,7 @@ class Formulator {
     for (int i = 0; i < c; ++i) trace.push_back(square(i, i));
     const Expression small = kRegular * graph_.sum(trace);
     for (int i = 0; i < c; ++i) square(i, i) = square(i, i) + small;
-    return SymbolicCholesky(graph_, square);
+    return {graph_, square};
   }
 
   // The velocities as those of a projector; see admissible_velocities.h. There are no momenta in

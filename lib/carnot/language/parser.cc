@@ -710,8 +710,8 @@ class Parser {
       } while (take("--"));
       if (part.points.size() < 2) unexpected("'--' and another point");
     }
+    if (scene_.drawing.size() >= kMostItems) fail(part.place, "there is too much to draw");
     scene_.drawing.push_back(std::move(part));
-    if (scene_.drawing.size() > kMostItems) fail(part.place, "there is too much to draw");
   }
 
   void path() {

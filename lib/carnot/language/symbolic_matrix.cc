@@ -60,7 +60,7 @@ SymbolicCholesky::SymbolicCholesky(Graph& graph, const SymbolicMatrix& a)
     factor_two(a);
     return;
   }
-  const double threshold = pivot_round_off<double>(n);
+  const auto threshold = pivot_round_off<double>(n);
   SymbolicVector pivots;
   for (int j = 0; j < n; ++j) {
     SymbolicVector terms{a(j, j)};

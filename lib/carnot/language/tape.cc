@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <unordered_map>
 #include <utility>
 
@@ -419,9 +420,9 @@ std::byte* tape_memory(std::size_t bytes) {
   constexpr std::size_t kLine = 64;
   thread_local std::vector<std::byte> memory;
   if (memory.size() < bytes + kLine) memory.resize(bytes + kLine);
-  auto address = reinterpret_cast<std::uintptr_t>(memory.data());
-  address = (address + kLine - 1) / kLine * kLine;
-  return reinterpret_cast<std::byte*>(address);
+  void* address = memory.data();
+  std::size_t space = memory.size();
+  return static_cast<std::byte*>(std::align(kLine, bytes, address, space));
 }
 
 Tape::Tape(Graph& graph,

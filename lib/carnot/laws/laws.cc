@@ -249,6 +249,7 @@ EnergyLaw measure_energy(const Dynamics& dynamics,
     return law;
   }
   std::vector<double> errors;
+  errors.reserve(h.size());
   for (const double value : h) errors.push_back(value - h.front());
   const double all = largest(errors, errors.size());
   law.growth = ratio(all, largest(errors, errors.size() / kEarly));

@@ -24,12 +24,14 @@ void refuse_unless(bool good, const ButcherTableau& butcher, const std::string& 
 
 void check_rows(const ButcherTableau& butcher, const Rows& rows, const std::string& name) {
   const std::size_t s = butcher.b.size();
-  const std::string wanted = std::to_string(s) + " rows of " + std::to_string(s);
-  refuse_unless(rows.size() == s, butcher, name + " must have " + wanted + ", as b has entries");
+  const std::string wanted =
+      name + " must have " + std::to_string(s) + " rows of " + std::to_string(s);
+  const std::string infinite = name + " has an entry that is not finite";
+  refuse_unless(rows.size() == s, butcher, wanted + ", as b has entries");
   for (const std::vector<double>& row : rows) {
-    refuse_unless(row.size() == s, butcher, name + " must have " + wanted);
+    refuse_unless(row.size() == s, butcher, wanted);
     for (const double entry : row) {
-      refuse_unless(std::isfinite(entry), butcher, name + " has an entry that is not finite");
+      refuse_unless(std::isfinite(entry), butcher, infinite);
     }
   }
 }

@@ -33,10 +33,8 @@ class Rows {
   void clear(T* row) const {
     for (int d = 0; d < length(); ++d) row[d] = T(0);
   }
-  // sum += a x, and sum += a x y, with derivatives. The rows are different ones.
-  template <class Factor>
-  void add(const Factor& a, const T* __restrict x, T* __restrict sum) const {
-    const T factor(a);
+  // sum += factor x, and sum += a x y, with derivatives. The rows are different ones.
+  void add(const T& factor, const T* __restrict x, T* __restrict sum) const {
     for (int d = 0; d < length(); ++d) sum[d] += factor * x[d];
   }
   void add_product(double a, const T* x, const T* y, T* __restrict sum) const {
