@@ -209,8 +209,9 @@ void transcription_packed_hessian(const void* opaque,
     std::array<P, Scene::kMultipliers> multipliers;
     packs(lambda, multipliers);
     const auto entries = lagrangian_hessian(system, at.data(), velocity.data(), multipliers.data());
-    for (std::size_t i = 0; i < entries.size(); ++i)
+    for (std::size_t i = 0; i < entries.size(); ++i) {
       entries[i].store(l_qq + i * kTranscriptionLanes);
+    }
   });
 }
 

@@ -45,9 +45,9 @@ class LimitedSearch {
   // Solves on the grid of the path.
   [[nodiscard]] std::optional<Candidate> solve(Path path) const;
   void note(std::optional<Candidate> candidate);
-  // Says in the answer where time was up before all of them were finished.
   [[nodiscard]] std::size_t rivals(const std::vector<Candidate*>& open,
                                    const std::vector<Geodesic>& known) const;
+  // Says in the answer where time was up before all of them were finished.
   void finish_candidates(int threads, const Deadline& deadline, LimitedAnswer& answer);
   [[nodiscard]] bool enough() const;
   [[nodiscard]] std::string infeasible() const;
