@@ -104,7 +104,7 @@ class AdaptiveDop853 {
   // y + h sum_j a_ij k_j.
   template <int row>
   void combine(const Point& y, double h, Point& out) const {
-    for (int i = 0; i < n; ++i) out[i] = y[i] + h * weighted<dop853::kA[row]>(i);
+    for (int i = 0; i < n; ++i) out[i] = y[i] + h * weighted<dop853::kRow<row>>(i);
   }
 
   template <std::size_t... i>

@@ -129,6 +129,7 @@ std::vector<Trial> try_all(const Course& course, int targets, int threads, const
 
 double quantile(const std::vector<Trial>& trials, double share) {
   std::vector<double> seconds;
+  seconds.reserve(trials.size());
   for (const Trial& trial : trials) seconds.push_back(trial.seconds);
   const auto at = seconds.begin() +
                   static_cast<std::ptrdiff_t>(share * static_cast<double>(seconds.size() - 1));

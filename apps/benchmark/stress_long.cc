@@ -56,7 +56,7 @@ StressCase skate_case(long steps, const Progress& progress) {
 
 double slope_of(const EnergyGrowth& first, const EnergyGrowth& last) {
   return std::log(last.drift / first.drift) /
-         std::log(static_cast<double>(last.steps) / first.steps);
+         std::log(static_cast<double>(last.steps) / static_cast<double>(first.steps));
 }
 
 // `kept` and `lost`: the rows with and without what steps are rounded by, up to the same steps.

@@ -24,9 +24,9 @@ constexpr long kSwings = 1000;
 
 // w = 1.
 FlowReport oscillate(double step, std::vector<double>& z) {
-  static const Dynamics oscillator = make_dynamics(
+  static const Dynamics kOscillator = make_dynamics(
       scene_from_text("coordinates q\nkinetic = q'^2 / 2\npotential = q^2 / 2\n"), "midpoint");
-  return oscillator.flow(StepPlan::equal(0, step * kSwings, kSwings), z);
+  return kOscillator.flow(StepPlan::equal(0, step * kSwings, kSwings), z);
 }
 
 double runge_kutta_factor(double hw) {

@@ -51,7 +51,8 @@ std::vector<double> momentum_of(const Dynamics& dynamics,
 }
 
 std::vector<double> parse_lambda(const FlowOptions& options, const Dynamics& dynamics) {
-  if (options.lambda.empty()) return std::vector<double>(dynamics.multipliers, 0.0);
+  std::vector<double> lambda(dynamics.multipliers);
+  if (options.lambda.empty()) return lambda;
   if (dynamics.multipliers == 0) {
     refuse("--lambda", options.lambda, "the scene has no multipliers", "no --lambda");
   }

@@ -183,6 +183,7 @@ SeriesPage energy_page(const Series& beginning, const std::vector<EnergyRun>& ru
 
 void add_cosine_energy(PaperWork& work, PaperPart& part) {
   std::vector<EnergyRun> runs;
+  runs.reserve(kEnergyMethods.size());
   for (const std::string& method : kEnergyMethods) runs.push_back(energy_run(work, method));
   add_energy_rows(runs.front(), part);
   add_trapped(work, part);

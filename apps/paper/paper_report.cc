@@ -61,6 +61,7 @@ std::string table_text(const PaperTable& table) {
   std::vector<std::vector<std::string>> lines{table.columns};
   for (const auto& row : table.rows) {
     std::vector<std::string> line;
+    line.reserve(row.size());
     for (const double x : row) line.push_back(std::isfinite(x) ? text_number(x, 5) : "-");
     lines.push_back(line);
   }

@@ -16,6 +16,7 @@ bool any(const std::vector<bool>& free) {
 
 std::vector<bool> free_of(const std::vector<std::optional<double>>& typed) {
   std::vector<bool> free;
+  free.reserve(typed.size());
   for (const auto& value : typed) free.push_back(!value);
   return free;
 }
@@ -23,6 +24,7 @@ std::vector<bool> free_of(const std::vector<std::optional<double>>& typed) {
 std::vector<double> filled(const std::vector<std::optional<double>>& typed,
                            const std::vector<std::optional<double>>& other) {
   std::vector<double> values;
+  values.reserve(typed.size());
   for (std::size_t j = 0; j < typed.size(); ++j) {
     values.push_back(typed[j].value_or(other[j].value_or(0)));
   }

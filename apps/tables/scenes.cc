@@ -51,6 +51,7 @@ std::string overview() {
     }
   }
   std::vector<std::vector<std::string>> rows;
+  rows.reserve(entries.size());
   for (const SceneEntry* entry : entries) {
     rows.push_back({"  " + entry->info.name,
                     fmt::format("{}", fmt::join(coordinate_names(*entry), ", ")),

@@ -50,7 +50,7 @@ std::vector<std::string> join_values(const std::vector<std::string>& arguments,
     if (!seen.insert(name).second && !repeatable) {
       refuse(name, value, "given twice", name + " once");
     }
-    joined.push_back(name + "=" + value);
+    joined.push_back(fmt::format("{}={}", name, value));
   }
   return joined;
 }

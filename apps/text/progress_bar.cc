@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <utility>
 
@@ -34,7 +35,7 @@ std::string progress_line(double fraction, double seconds, double total, const s
                                  std::string(kWidth - filled, '.'),
                                  100 * fraction);
   if (fraction > 0 && seconds > 0) {
-    const auto left = static_cast<long>(seconds * (1 - fraction) / fraction + 0.5);
+    const long left = std::lround(seconds * (1 - fraction) / fraction);
     line += fmt::format("  {}{}/s  {}:{:02} left",
                         with_prefix(fraction * total / seconds),
                         unit,

@@ -22,9 +22,6 @@ template <const Weights& w>
   return weighted<w>(P(0), [&](int j) { return P::load(f + (j * size + k) * kLanes); });
 }
 
-template <int i>
-inline constexpr Weights kRow = kA[i];
-
 // Row k of `to` <- row k of z + h sum_j a_ij f_j. The weights are known to the compiler: where they
 // were looked up the sums took as long as the rates of the vehicle.
 template <int i>

@@ -30,6 +30,10 @@ inline constexpr std::array<Weights, kStages + 1> kA = [] {
   return a;
 }();
 
+// Row i, as an object of its own: clang 14 takes no part of one as the argument of a template.
+template <int i>
+inline constexpr Weights kRow = kA[i];
+
 // b minus the weights of order 5.
 inline constexpr Weights kError5 = {number("0.01312004499419488073250102996"),
                                     0,
