@@ -49,7 +49,7 @@ void add_circle_momenta(const Dynamics& dynamics, PaperPart& part) {
   part.rows.push_back({"lambda on the circle",
                        "(1, -c) = (1, -1)",
                        rounded_text(lambda),
-                       off <= 4 * kEps ? Verdict::kMisprint : Verdict::kFails,
+                       off <= 4 * kEps ? PaperVerdict::kMisprint : PaperVerdict::kFails,
                        fmt::format("with lambda = (1, -1) the momenta would be {}, not constant",
                                    rounded_text(momenta(dynamics, {1, -kSpeed}))),
                        off,

@@ -37,7 +37,7 @@ void add_start(const Dynamics& dynamics, PaperPart& part) {
   part.rows.push_back({"lambda at q = 0, p = (0.1, 0.3, 1)",
                        "1",
                        fmt::format("{:g}", lambda[0]),
-                       right ? Verdict::kMisprint : Verdict::kFails,
+                       right ? PaperVerdict::kMisprint : PaperVerdict::kFails,
                        "lambda = -g.p/g.g = -1; with 1 the velocity would be (0.1, 0.3, 2) and "
                        "g.q' = 2",
                        lambda[0],

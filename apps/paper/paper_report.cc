@@ -10,11 +10,11 @@
 namespace carnot::apps {
 namespace {
 
-std::string word(Verdict verdict) {
+std::string word(PaperVerdict verdict) {
   switch (verdict) {
-    case Verdict::kHolds:
+    case PaperVerdict::kHolds:
       return "holds";
-    case Verdict::kMisprint:
+    case PaperVerdict::kMisprint:
       return "misprint";
     default:
       return "FAILS";
@@ -75,7 +75,7 @@ Json row_json(const PaperPart& part, const PaperRow& row) {
           {"here", row.here},
           {"value", or_null(row.value)},
           {"expected", or_null(row.expected)},
-          {"verdict", row.verdict == Verdict::kFails ? "fails" : word(row.verdict)},
+          {"verdict", row.verdict == PaperVerdict::kFails ? "fails" : word(row.verdict)},
           {"note", row.note}};
 }
 
@@ -111,7 +111,7 @@ std::size_t count_failures(const std::vector<PaperPart>& parts) {
   for (const PaperPart& part : parts) {
     failures += static_cast<std::size_t>(
         std::count_if(part.rows.begin(), part.rows.end(), [](const PaperRow& row) {
-          return row.verdict == Verdict::kFails;
+          return row.verdict == PaperVerdict::kFails;
         }));
   }
   return failures;

@@ -10,19 +10,19 @@
 
 namespace carnot::apps {
 
-enum class Verdict {
+enum class PaperVerdict {
   kHolds,     // measured as it should be
   kMisprint,  // the paper's own equations give something else, and that was measured
   kFails      // measured, and not as it should be
 };
 
-constexpr Verdict holds(bool yes) { return yes ? Verdict::kHolds : Verdict::kFails; }
+constexpr PaperVerdict holds(bool yes) { return yes ? PaperVerdict::kHolds : PaperVerdict::kFails; }
 
 struct PaperRow {
   std::string what;
   std::string paper;  // what the paper says
   std::string here;   // what was measured
-  Verdict verdict = Verdict::kHolds;
+  PaperVerdict verdict = PaperVerdict::kHolds;
   std::string note{};                // how it was measured or why it is so
   std::optional<double> value{};     // the number behind `here`
   std::optional<double> expected{};  // what it should be, where a formula says so

@@ -173,7 +173,7 @@ void add_returns(const std::vector<Excursions>& runs, PaperPart& part) {
 
 void add_next_circle(const Excursions& run, PaperPart& part) {
   if (run.returns.empty()) {
-    part.rows.push_back({"the next circle", "the same", "not reached", Verdict::kFails});
+    part.rows.push_back({"the next circle", "the same", "not reached", PaperVerdict::kFails});
     return;
   }
   const Return& first = run.returns.front();

@@ -163,8 +163,8 @@ TEST_F(Paper, HoldsOrIsAMisprint) {
     EXPECT_GE(part.rows.size(), 7U) << part.title;
     EXPECT_GE(part.figures.size(), 1U) << part.title;
     for (const PaperRow& each : part.rows) {
-      EXPECT_NE(each.verdict, Verdict::kFails) << each.what << ": " << each.here;
-      misprints += each.verdict == Verdict::kMisprint ? 1 : 0;
+      EXPECT_NE(each.verdict, PaperVerdict::kFails) << each.what << ": " << each.here;
+      misprints += each.verdict == PaperVerdict::kMisprint ? 1 : 0;
       if (each.value) {
         EXPECT_TRUE(std::isfinite(*each.value)) << each.what;
       }
@@ -217,7 +217,8 @@ TEST_F(Paper, TextAndJsonHoldEveryRow) {
 
 TEST(PaperReport, ShowsWhatFails) {
   const PaperRow good{"sky", "blue", "blue"};
-  const PaperRow bad{"sea", "blue", "grey", Verdict::kFails, std::string(30, 'w') + " and why"};
+  const PaperRow bad{
+      "sea", "blue", "grey", PaperVerdict::kFails, std::string(30, 'w') + " and why"};
   const std::vector<PaperPart> parts{{"Colours", {good, bad}}};
   EXPECT_EQ(count_failures(parts), 1U);
   EXPECT_EQ(
