@@ -48,12 +48,12 @@ inline void read_journal(std::string_view bytes) {
 
 // The first and the last problem of a list are numbers.
 inline void expect_problems(const apps::ListOptions& options) {
-  static const apps::Run run = [] {
+  static const apps::Run kRun = [] {
     apps::RunOptions of_unicycle;
     of_unicycle.scene = "unicycle";
     return apps::check(of_unicycle);
   }();
-  const auto list = apps::make_problem_list(options, run, {});
+  const auto list = apps::make_problem_list(options, kRun, {});
   for (const long i : {0L, list->size() - 1}) {
     const apps::AtlasProblem problem = list->at(i);
     for (const double x : problem.ends.from) expect_finite(x);

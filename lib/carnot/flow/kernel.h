@@ -96,8 +96,8 @@ FlowReport flow(const void* opaque, const void* data, const StepPlan& plan, doub
 template <class M>
 FlowReport tangent_flow(
     const void* opaque, const void* data, const StepPlan& plan, double* z, double* m) {
-  constexpr int size = 2 * M::n;
-  using Square = Matrix<double, size, size>;
+  constexpr int kSize = 2 * M::n;
+  using Square = Matrix<double, kSize, kSize>;
   const M& method = *static_cast<const M*>(data);
   const auto& system = method.system(opaque);
   auto stepper = stepper_of(method, system, opaque);
@@ -110,8 +110,8 @@ FlowReport tangent_flow(
         winding.fold(node);
         return true;
       });
-  view<size>(z) = winding.unfolded(state).value;
-  using RowMajor = Eigen::Matrix<double, size, size, Eigen::RowMajor>;
+  view<kSize>(z) = winding.unfolded(state).value;
+  using RowMajor = Eigen::Matrix<double, kSize, kSize, Eigen::RowMajor>;
   Eigen::Map<RowMajor> out(m);
   out = tangent.value;
   return report;

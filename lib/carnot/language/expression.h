@@ -74,7 +74,7 @@ struct Expression {
 struct Part {
   std::uint32_t node = 0;
   double factor = 0;
-  friend auto operator<=>(const Part&, const Part&) = default;
+  friend auto operator<=>(const Part&, const Part&) = default;  // NOLINT(modernize-use-nullptr)
 };
 
 struct Node {

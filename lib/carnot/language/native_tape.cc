@@ -42,7 +42,7 @@ class MemoryOf : public NativeTape::Memory {
 };
 
 std::unique_ptr<const NativeTape::Memory> memory_of(const TapeParts& tape) {
-  if constexpr (NativeMachine<WideNumber>::exists) {
+  if constexpr (NativeMachine<WideNumber>::kExists) {
     try {
       return std::make_unique<MemoryOf<WideNumber>>(tape);
     } catch (const std::exception&) {  // of the assembler: the system allows no code

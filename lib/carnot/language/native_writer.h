@@ -7,6 +7,7 @@
 
 #include <xbyak/xbyak.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -25,12 +26,12 @@ namespace carnot::language {
 // there is no such code.
 template <class V>
 struct NativeMachine {
-  static constexpr bool exists = false;
+  static constexpr bool kExists = false;
 };
 #if XSIMD_WITH_AVX512F
 template <class V>
 requires(sizeof(V) == 64) struct NativeMachine<V> {
-  static constexpr bool exists = true;
+  static constexpr bool kExists = true;
   using Register = Xbyak::Zmm;
   static constexpr int kRegisters = 32;
 };
@@ -38,7 +39,7 @@ requires(sizeof(V) == 64) struct NativeMachine<V> {
 #if XSIMD_WITH_FMA3_AVX2
 template <>
 struct NativeMachine<xsimd::batch<double, xsimd::fma3<xsimd::avx2>>> {
-  static constexpr bool exists = true;
+  static constexpr bool kExists = true;
   using Register = Xbyak::Ymm;
   static constexpr int kRegisters = 16;
 };
@@ -97,7 +98,7 @@ class NativeWriter {
     }
     return_whether_finite();
     code_.vzeroupper();
-    for (auto x = kept.rbegin(); x != kept.rend(); ++x) code_.pop(*x);
+    std::for_each(kept.rbegin(), kept.rend(), [&](const auto& x) { code_.pop(x); });
     code_.ret();
     code_.align(kWidth);
     code_.L(pool_);

@@ -158,7 +158,7 @@ struct TapeMachine {
   template <class F, int operands>
   static AnyHandler handler_of(const TapeStep& s) {
     const auto pick = [&]<int i>(std::integral_constant<int, i>) {
-      constexpr Where a = static_cast<Where>(i % 3);
+      constexpr auto a = static_cast<Where>(i % 3);
       constexpr Where b = operands > 1 ? static_cast<Where>(i / 3 % 3) : Where::kConstant;
       constexpr Where c = operands > 2 ? static_cast<Where>(i / 9 % 3) : Where::kConstant;
       return s.stored ? &step<F, a, b, c, true> : &step<F, a, b, c, false>;

@@ -186,29 +186,28 @@ class Pack {
   static_assert(W % Ops::kSize == 0);
 
   // One truth value per lane.
-  class Mask {
-   public:
-    Mask() {}
+  struct Mask {
+    Mask() = default;
     Mask(bool x) {
-      for (auto& part : part_) part = typename Ops::Bools(x);
+      for (auto& part : parts) part = typename Ops::Bools(x);
     }
     explicit operator bool() const = delete;  // the lanes may differ: all(), any() or select()
 
     [[nodiscard]] friend bool all(const Mask& a) {
       bool result = true;
-      for (int i = 0; i < kParts; ++i) result = result && Ops::all(a.part_[i]);
+      for (int i = 0; i < kParts; ++i) result = result && Ops::all(a.parts[i]);
       return result;
     }
     [[nodiscard]] friend bool any(const Mask& a) {
       bool result = false;
-      for (int i = 0; i < kParts; ++i) result = result || Ops::any(a.part_[i]);
+      for (int i = 0; i < kParts; ++i) result = result || Ops::any(a.parts[i]);
       return result;
     }
 
-    typename Ops::Bools part_[kParts];
+    typename Ops::Bools parts[kParts];
   };
   friend Pack select(const Mask& mask, const Pack& a, const Pack& b) {
-    return each([&](int i) { return Ops::select(mask.part_[i], a.part(i), b.part(i)); });
+    return each([&](int i) { return Ops::select(mask.parts[i], a.part(i), b.part(i)); });
   }
 
   // Copies register by register: else compilers copy piecewise, which the next load waits for.
@@ -216,6 +215,7 @@ class Pack {
   [[gnu::always_inline]] Pack(const Pack& other) {
     for (int i = 0; i < kParts; ++i) part_[i] = other.part_[i];
   }
+  // NOLINTNEXTLINE(bugprone-unhandled-self-assignment): a register is the same after `x = x`
   [[gnu::always_inline]] Pack& operator=(const Pack& other) {
     for (int i = 0; i < kParts; ++i) part_[i] = other.part_[i];
     return *this;
@@ -318,7 +318,7 @@ class Pack {
   template <class F>
   [[gnu::always_inline]] static Mask compare(F f) {
     Mask result;
-    for (int i = 0; i < kParts; ++i) result.part_[i] = f(i);
+    for (int i = 0; i < kParts; ++i) result.parts[i] = f(i);
     return result;
   }
   template <class F>

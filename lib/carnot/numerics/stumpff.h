@@ -82,7 +82,8 @@ T stumpff(const T& s) {
         sum += term;
       }
       return sum;
-    } else if constexpr (k == 0) {
+    }
+    if constexpr (k == 0) {
       return cos(sqrt(s));
     } else if constexpr (k == 1) {
       const T root = sqrt(s);

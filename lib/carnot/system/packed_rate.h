@@ -137,19 +137,20 @@ bool packed_jacobian(const System& system,
     static_assert(W == 8);
     return system.packed_jacobian(t, z, weights, jacobian);
   } else {
-    constexpr int size = 2 * System::kDof;
+    constexpr int kSize = 2 * System::kDof;
     constexpr int kDirections = kPackedDirections<System::kDof>;
-    // Row `size` is one and all others are zero, so that the unit vectors are windows on them.
+    // Row `kSize` is one and all others are zero, so that the unit vectors are windows on them.
     alignas(64) static constexpr auto kUnits = [] {
-      std::array<double, 2 * size * W> rows{};
-      for (int l = 0; l < W; ++l) rows[size * W + l] = 1;
+      std::array<double, 2 * kSize * W> rows{};
+      for (int l = 0; l < W; ++l) rows[kSize * W + l] = 1;
       return rows;
     }();
-    for (int next = 0; next < size; next += kDirections) {
-      const int first = std::min(next, size - kDirections);
+    for (int next = 0; next < kSize; next += kDirections) {
+      const int first = std::min(next, kSize - kDirections);
       std::array<const double*, kDirections> seeds;
-      for (int d = 0; d < kDirections; ++d) seeds[d] = kUnits.data() + (size - first - d) * W;
-      if (!packed_slopes<W>(system, t, z, seeds, weights, size, jacobian + first * W)) return false;
+      for (int d = 0; d < kDirections; ++d) seeds[d] = kUnits.data() + (kSize - first - d) * W;
+      if (!packed_slopes<W>(system, t, z, seeds, weights, kSize, jacobian + first * W))
+        return false;
     }
     return true;
   }
@@ -159,21 +160,21 @@ bool packed_jacobian(const System& system,
 template <class System>
 bool jacobian_in_pack(const System& system, double t, const double* z, double* jacobian) {
   constexpr int W = 8;
-  constexpr int size = 2 * System::kDof;
+  constexpr int kSize = 2 * System::kDof;
   constexpr int kDirections = kPackedDirections<System::kDof>;
   constexpr int kAtOnce = kDirections * W;
   alignas(64) std::array<double, W> time;
   alignas(64) std::array<double, W> weights;
-  alignas(64) std::array<double, size * W> points;
-  alignas(64) std::array<std::array<double, size * W>, kDirections> units;
-  alignas(64) std::array<double, size * kDirections * W> slopes;
+  alignas(64) std::array<double, kSize * W> points;
+  alignas(64) std::array<std::array<double, kSize * W>, kDirections> units;
+  alignas(64) std::array<double, kSize * kDirections * W> slopes;
   std::array<const double*, kDirections> seeds;
   for (int d = 0; d < kDirections; ++d) seeds[d] = units[d].data();
   time.fill(t);
   weights.fill(1);
-  for (int k = 0; k < size; ++k) std::fill_n(points.data() + k * W, W, z[k]);
-  for (int first = 0; first < size; first += kAtOnce) {
-    const int count = std::min(kAtOnce, size - first);
+  for (int k = 0; k < kSize; ++k) std::fill_n(points.data() + k * W, W, z[k]);
+  for (int first = 0; first < kSize; first += kAtOnce) {
+    const int count = std::min(kAtOnce, kSize - first);
     // Column first + c is direction c / W of lane c % W.
     for (auto& unit : units) unit.fill(0);
     for (int c = 0; c < count; ++c) units[c / W][(first + c) * W + c % W] = 1;
@@ -187,8 +188,8 @@ bool jacobian_in_pack(const System& system, double t, const double* z, double* j
       return false;
     }
     for (int c = 0; c < count; ++c) {
-      for (int r = 0; r < size; ++r) {
-        jacobian[(first + c) * size + r] = slopes[(r * kDirections + c / W) * W + c % W];
+      for (int r = 0; r < kSize; ++r) {
+        jacobian[(first + c) * kSize + r] = slopes[(r * kDirections + c / W) * W + c % W];
       }
     }
   }
@@ -205,18 +206,18 @@ bool columns_in_pack(const System& system,
                      const Points& z,
                      Algebraic& y,
                      Points& z_dot) {
-  constexpr int size = 2 * System::kDof;
+  constexpr int kSize = 2 * System::kDof;
   constexpr int m = System::kAlgebraic;
   alignas(64) std::array<double, W> time;
-  alignas(64) std::array<double, size * W> points;
-  alignas(64) std::array<double, size * W> rates;
+  alignas(64) std::array<double, kSize * W> points;
+  alignas(64) std::array<double, kSize * W> rates;
   alignas(64) std::array<double, m * W> solutions;
   int used = m;
   if constexpr (IsErased<System>) used = system.algebraic_count();
   for (int l = 0; l < W; ++l) {
     const int column = std::min(l, count - 1);
     time[l] = t[column];
-    for (int k = 0; k < size; ++k) points[k * W + l] = z(k, first + column);
+    for (int k = 0; k < kSize; ++k) points[k * W + l] = z(k, first + column);
     if constexpr (IsErased<System>) {  // it may iterate, from the y of each point
       for (int k = 0; k < used; ++k) solutions[k * W + l] = y(k, first + column);
     }
@@ -225,7 +226,7 @@ bool columns_in_pack(const System& system,
     return false;
   }
   for (int l = 0; l < count; ++l) {
-    for (int k = 0; k < size; ++k) z_dot(k, first + l) = rates[k * W + l];
+    for (int k = 0; k < kSize; ++k) z_dot(k, first + l) = rates[k * W + l];
     for (int k = 0; k < used; ++k) y(k, first + l) = solutions[k * W + l];
   }
   return true;

@@ -72,13 +72,13 @@ RateStatus jacobian(const void* opaque, double t, const double* z, const double*
     const RateStatus status = rate<System>(opaque, t, z, unused.data(), z_dot.data());
     return status == RateStatus::kOk ? RateStatus::kFarAngle : status;
   } else {
-    constexpr int size = 2 * System::kDof;
+    constexpr int kSize = 2 * System::kDof;
     constexpr int m = System::kAlgebraic;
-    Matrix<double, size, size> a;
-    const Vector<double, size> at = view<size>(z);
+    Matrix<double, kSize, kSize> a;
+    const Vector<double, kSize> at = view<kSize>(z);
     const Vector<double, m> algebraic = view<m>(y);
     const RateStatus status = phase_jacobian(system_of<System>(opaque), t, at, algebraic, a);
-    if (status == RateStatus::kOk) view<size * size>(out) = view<size * size>(a.data());
+    if (status == RateStatus::kOk) view<kSize * kSize>(out) = view<kSize * kSize>(a.data());
     return status;
   }
 }
@@ -89,19 +89,19 @@ bool rates(const void* opaque, const double* t, const double* z, double* y, doub
   if constexpr (PacksRates<System>) {
     return packed_rate<kErasedLanes>(system_of<System>(opaque), t, z, y, z_dot);
   } else {
-    constexpr int size = 2 * System::kDof;
+    constexpr int kSize = 2 * System::kDof;
     constexpr int m = System::kAlgebraic;
     constexpr int s = kErasedLanes;
-    std::array<double, size> point;
-    std::array<double, size> out;
+    std::array<double, kSize> point;
+    std::array<double, kSize> out;
     std::array<double, std::max(m, 1)> algebraic;
     for (int l = 0; l < s; ++l) {
-      for (int k = 0; k < size; ++k) point[k] = z[k * s + l];
+      for (int k = 0; k < kSize; ++k) point[k] = z[k * s + l];
       for (int k = 0; k < m; ++k) algebraic[k] = y[k * s + l];
       const RateStatus status =
           rate<System>(opaque, t[l], point.data(), algebraic.data(), out.data());
       if (status != RateStatus::kOk) return false;
-      for (int k = 0; k < size; ++k) z_dot[k * s + l] = out[k];
+      for (int k = 0; k < kSize; ++k) z_dot[k * s + l] = out[k];
       for (int k = 0; k < m; ++k) y[k * s + l] = algebraic[k];
     }
     return true;

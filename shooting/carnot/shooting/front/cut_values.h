@@ -55,11 +55,11 @@ struct CutValuesOptions {
 
 class CutValues {
  public:
-  CutValues(const Dynamics& dynamics,
+  CutValues(Dynamics dynamics,
             std::vector<double> from,
             UnitMomenta all_momenta,
             CutValuesOptions options)
-      : dynamics_(dynamics),
+      : dynamics_(std::move(dynamics)),
         from_(std::move(from)),
         all_momenta_(std::move(all_momenta)),
         options_(std::move(options)) {}

@@ -8,7 +8,6 @@
 #include <mutex>
 #include <string_view>
 #include <unordered_map>
-#include <utility>
 #include <vector>
 
 namespace carnot::internal {
@@ -30,10 +29,10 @@ class SteeringMemory {
   }
 
   // Keeps the first of equal questions.
-  void insert(const Key& key, Value value) {
+  void insert(const Key& key, const Value& value) {
     if (capacity_ == 0) return;
     const std::lock_guard lock(mutex_);
-    const auto [place, fresh] = answers_.try_emplace(key, std::move(value));
+    const auto [place, fresh] = answers_.try_emplace(key, value);
     if (!fresh) return;
     order_.push_back(&place->first);
     if (order_.size() <= capacity_) return;
