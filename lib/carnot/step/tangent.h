@@ -15,6 +15,7 @@
 #include <limits>
 #include <utility>
 
+#include "carnot/numerics/balance.h"
 #include "carnot/step/runge_kutta.h"
 
 namespace carnot {
@@ -218,6 +219,9 @@ class Tangent {
 
   // (I - A_i mu_ij) dL = A_i dz, all stages at once.
   bool solve(const Step& step, const Compensated<Square>& m) {
+    Square sizes = jacobian_[0].cwiseAbs();
+    for (int i = 1; i < count_; ++i) sizes += jacobian_[i].cwiseAbs();
+    units_ = balanced_units(sizes);
     for (int i = 0; i < count_; ++i) {
       increment_[i] = jacobian_[i].lazyProduct(m.value);
       set_rhs(i, increment_[i]);
@@ -234,6 +238,7 @@ class Tangent {
       argument += m.value;
       increment_[i] = jacobian_[i].lazyProduct(argument);
       if (step.tableau().coupling == Coupling::kExplicit) continue;
+      units_ = balanced_units(Square(jacobian_[i].cwiseAbs()));
       set_rhs(0, increment_[i]);
       set_block(step, i, i, 0, 0, 1);
       if (!lu(i, 1)) return false;
@@ -241,11 +246,12 @@ class Tangent {
     return true;
   }
 
-  // Block `block` of the right-hand sides.
+  // Block `block` of the right-hand sides, in units_ as the matrix and the solution: which pivots
+  // are taken, and so what is lost by rounding, does not depend on the units of the scene.
   void set_rhs(int block, const Square& value) {
     T* to = rhs_.data() + block * kSize * kSize;
     for (int r = 0; r < kSize; ++r) {
-      for (int c = 0; c < kSize; ++c) *to++ = value(r, c);
+      for (int c = 0; c < kSize; ++c) *to++ = value(r, c) / units_[r];
     }
   }
 
@@ -256,7 +262,7 @@ class Tangent {
         const T identity(i == j && r == c ? 1 : 0);
         const T mu = c < kDof ? step.tableau().mu(i, j) : step.tableau().momentum_mu(i, j);
         matrix_[(row * kSize + r) * kSize * blocks + column * kSize + c] =
-            identity - mu * jacobian_[i](r, c);
+            identity - mu * jacobian_[i](r, c) * units_[c] / units_[r];
       }
     }
   }
@@ -268,7 +274,7 @@ class Tangent {
     const T* from = rhs_.data();
     for (int i = first; i < first + blocks; ++i) {
       for (int r = 0; r < kSize; ++r) {
-        for (int c = 0; c < kSize; ++c) increment_[i](r, c) = *from++;
+        for (int c = 0; c < kSize; ++c) increment_[i](r, c) = *from++ * units_[r];
       }
       finite = finite && increment_[i].allFinite();
     }
@@ -283,6 +289,7 @@ class Tangent {
   Square moved_;                  // what the last step added to M
   std::array<T, kSize> weights_;  // of the changes of columns
   // Scratch of the linear solves.
+  Vector<T, kSize> units_;
   std::array<T, kSize * Step::kMaxCoupled * kSize * Step::kMaxCoupled> matrix_;
   std::array<T, kSize * Step::kMaxCoupled * kSize> rhs_;
 
