@@ -7,13 +7,17 @@
 
 namespace carnot::apps {
 
-void check_holonomic(std::string_view option, std::string_view text, double residual) {
+void check_holonomic(std::string_view option,
+                     std::string_view text,
+                     const HolonomicResiduals& residuals) {
   constexpr double kTolerance = 1e-9;
-  if (residual <= kTolerance) return;
+  if (residuals.relative_position <= kTolerance) return;
   refuse(option,
          text,
-         fmt::format("off the holonomic constraints, max |h(q)| = {:.3g}", residual),
-         fmt::format("a configuration with max |h(q)| <= {:g}", kTolerance));
+         fmt::format("off the holonomic constraints, max |h(q)| = {:.3g}, relative residual {:.3g}",
+                     residuals.position,
+                     residuals.relative_position),
+         fmt::format("a relative residual <= {:g}", kTolerance));
 }
 
 void check_end(std::string_view option,
@@ -23,7 +27,7 @@ void check_end(std::string_view option,
   if (dynamics.holonomic > 0) {
     std::vector<double> z = q;
     z.resize(2 * q.size(), 0.0);
-    check_holonomic(option, text, dynamics.holonomic_residuals(0, z).position);
+    check_holonomic(option, text, dynamics.holonomic_residuals(0, z));
   }
   const RateStatus status = end_status(dynamics, q);
   if (status != RateStatus::kOk) refuse(option, text, describe(status), "regular configurations");

@@ -8,8 +8,10 @@
 
 namespace carnot::apps {
 
-// Throws std::invalid_argument where max |h(q)| is more than round-off of what a person types.
-void check_holonomic(std::string_view option, std::string_view text, double residual);
+// Throws std::invalid_argument where h(q) is more than round-off of what a person types.
+void check_holonomic(std::string_view option,
+                     std::string_view text,
+                     const HolonomicResiduals& residuals);
 
 // The same for an end q of a geodesic, where constraints must be independent and coordinates
 // regular, too.

@@ -100,13 +100,13 @@ void check_manifold(const FlowOptions& options, FlowRequest& request) {
   const Dynamics& dynamics = request.run.dynamics;
   if (dynamics.holonomic == 0) return;
   const auto residuals = dynamics.holonomic_residuals(request.start_time, request.z);
-  check_holonomic("--from", options.from, residuals.position);
+  check_holonomic("--from", options.from, residuals);
   const bool by_momentum = !options.momentum.empty();
-  if (!(residuals.velocity <= kVelocityTolerance)) {
+  if (!(residuals.relative_velocity <= kVelocityTolerance)) {
     refuse(by_momentum ? "--momentum" : "--velocity",
            by_momentum ? options.momentum : options.velocity,
-           fmt::format("q' leaves the holonomic constraints, residual |Dh q'|/|q'| = {:.3g}",
-                       residuals.velocity),
+           fmt::format("q' leaves the holonomic constraints, relative residual of Dh q' = {:.3g}",
+                       residuals.relative_velocity),
            fmt::format("a residual <= {:g}", kVelocityTolerance));
   }
   if (!dynamics.project_on_manifold(request.start_time, request.z)) {

@@ -8,10 +8,48 @@
 #include <vector>
 
 #include "carnot/flow/batch.h"
+#include "carnot/scene/unit_sizes.h"
 #include "carnot/system/system_functions.h"
 #include "carnot/transcription/midpoint_transcription.h"
 
 namespace carnot {
+namespace {
+
+// `worst`, or |value| / terms where that is larger, or NaN.
+double larger_ratio(double worst, double value, double terms) {
+  const double ratio = value == 0 ? 0 : std::abs(value) / terms;
+  return ratio <= worst || std::isnan(worst) ? worst : ratio;
+}
+
+}  // namespace
+
+HolonomicResiduals Dynamics::holonomic_residuals(double t, std::span<const double> z) const {
+  assert(has_holonomic() && std::ssize(z) == 2 * dof);
+  std::vector<double> h(holonomic);
+  std::vector<double> dh(static_cast<std::size_t>(holonomic) * dof);
+  std::vector<double> v(dof);
+  calls.holonomic(system.get(), t, z.data(), h.data(), dh.data(), v.data());
+  const std::vector<double> sizes = sizes_by_unit(info, z.first(dof), 1);
+  const std::vector<double> speeds = sizes_by_unit(info, v, 0);
+  HolonomicResiduals residuals;
+  double leaving = 0;
+  for (int i = 0; i < holonomic; ++i) {
+    double terms = 0;
+    double rate = 0;
+    double rate_terms = 0;
+    for (int j = 0; j < dof; ++j) {
+      const double slope = dh[i * dof + j];
+      terms += std::abs(slope) * sizes[j];
+      rate += slope * v[j];
+      rate_terms += std::abs(slope) * speeds[j];
+    }
+    residuals.position = larger_ratio(residuals.position, h[i], 1);
+    residuals.relative_position = larger_ratio(residuals.relative_position, h[i], terms);
+    leaving = larger_ratio(leaving, rate, rate_terms);
+  }
+  residuals.relative_velocity = leaving;
+  return residuals;
+}
 
 PointValues Dynamics::evaluate(double t,
                                std::span<const double> q,

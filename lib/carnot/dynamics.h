@@ -30,10 +30,13 @@ struct PointValues {
   double hamiltonian = std::numeric_limits<double>::quiet_NaN();
 };
 
-// How far a phase point is from the manifold of the holonomic constraints.
+// How far a phase point is from the manifold of the holonomic constraints. What is relative has no
+// unit: an h_i stands against sum_j |d_j h_i| s_j, where s_j is the largest coordinate that has the
+// unit of q_j (where that is radian or one, at least 1), and (Dh q')_i against the same of q'.
 struct HolonomicResiduals {
-  double position = 0;                                         // max |h(q)|
-  double velocity = std::numeric_limits<double>::quiet_NaN();  // max |Dh q'| / |q'|
+  double position = 0;  // max |h(q)|
+  double relative_position = 0;
+  double relative_velocity = std::numeric_limits<double>::quiet_NaN();  // where there is a rate
 };
 
 struct Dynamics {
@@ -144,10 +147,7 @@ struct Dynamics {
 
   // With holonomic constraints only, at z = (q, p): residuals; the nearest point of the manifold,
   // false where there is none; the orthogonal projector on its tangent space, 2n x 2n.
-  [[nodiscard]] HolonomicResiduals holonomic_residuals(double t, std::span<const double> z) const {
-    assert(has_holonomic() && std::ssize(z) == 2 * dof);
-    return calls.holonomic_residuals(system.get(), t, z.data());
-  }
+  [[nodiscard]] HolonomicResiduals holonomic_residuals(double t, std::span<const double> z) const;
   [[nodiscard]] bool project_on_manifold(double t, std::span<double> z) const {
     assert(has_holonomic() && std::ssize(z) == 2 * dof);
     return calls.project_on_manifold(system.get(), t, z.data());
@@ -159,7 +159,7 @@ struct Dynamics {
     return calls.tangent_projector(system.get(), t, z.data(), projector.data());
   }
   // Whether there are holonomic constraints.
-  [[nodiscard]] bool has_holonomic() const { return calls.holonomic_residuals != nullptr; }
+  [[nodiscard]] bool has_holonomic() const { return calls.holonomic != nullptr; }
 
   // Whether there is a direct midpoint transcription; k stands for `transcribed` in what follows.
   [[nodiscard]] bool has_transcription() const { return transcription != nullptr; }
@@ -200,7 +200,8 @@ struct Dynamics {
     double (*momentum)(const void*, double, const double*, double*, const double*, double*);
     std::shared_ptr<const void> (*branch)(
         const void*, double, const double*, const double*, const double*);
-    HolonomicResiduals (*holonomic_residuals)(const void*, double, const double*);
+    // h(q), Dh(q) row by row, and q' at z: NaN where there is no rate.
+    void (*holonomic)(const void*, double, const double*, double*, double*, double*);
     bool (*project_on_manifold)(const void*, double, double*);
     bool (*tangent_projector)(const void*, double, const double*, double*);
   };

@@ -1,10 +1,12 @@
 // Dynamics of a scene: the templates of the core behind the function pointers of dynamics.h.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -67,22 +69,25 @@ double momentum(const void* opaque,
   return violated;
 }
 
-// max |h(q)|, and that of Dh q' over |q'|.
 template <class B>
-HolonomicResiduals holonomic_residuals(const void* opaque, double t, const double* z) {
+void holonomic(
+    const void* opaque, double t, const double* z, double* h, double* dh, double* q_dot) {
   const auto& system = B::from(opaque).system;
+  const auto& scene = system.scene();
+  constexpr int l = std::decay_t<decltype(scene)>::kHolonomic;
   const Vector<double, B::n> q = view<B::n>(z);
+  view<l>(h) = scene.holonomic(q);
+  const Matrix<double, l, B::n> rows = holonomic_jacobian(scene, q);
+  for (int i = 0; i < l; ++i) {
+    for (int j = 0; j < B::n; ++j) dh[i * B::n + j] = rows(i, j);
+  }
   Vector<double, B::m> y = B::from(opaque).branch;
   Vector<double, 2 * B::n> rate;
-  HolonomicResiduals residuals;
-  residuals.position = holonomic_residual(system.scene(), q);
-  if (phase_rate(system, t, Vector<double, 2 * B::n>(view<2 * B::n>(z)), y, rate) ==
-      RateStatus::kOk) {
-    const Vector<double, B::n> v = rate.template head<B::n>();
-    const double size = v.cwiseAbs().maxCoeff();
-    residuals.velocity = size > 0 ? hidden_residual(system.scene(), q, v) / size : 0;
+  const Vector<double, 2 * B::n> at = view<2 * B::n>(z);
+  if (phase_rate(system, t, at, y, rate) != RateStatus::kOk) {
+    rate.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
-  return residuals;
+  view<B::n>(q_dot) = rate.template head<B::n>();
 }
 
 template <class B>
@@ -149,7 +154,7 @@ Dynamics bind(const Scene& scene,
   if constexpr (HasHolonomic<Scene>) {
     dynamics.holonomic = Scene::kHolonomic;
     dynamics.forced = method.family == kRattleFamily ? Scene::kHolonomic : 0;
-    dynamics.calls.holonomic_residuals = holonomic_residuals<B>;
+    dynamics.calls.holonomic = holonomic<B>;
     dynamics.calls.project_on_manifold = project_on_manifold<B>;
     dynamics.calls.tangent_projector = tangent_projector<B>;
   }

@@ -148,6 +148,29 @@ TEST(HolonomicScenes, BadInputIsRefused) {
                  AllOf(HasSubstr("--to"), HasSubstr("holonomic")));
 }
 
+// A rod that is right to round-off is accepted in any unit of length, and one that is too long in
+// none.
+TEST(HolonomicScenes, AreInAnyUnit) {
+  for (const std::string unit : {"e-9", "e0", "e9"}) {
+    const Words flow{"flow",
+                     "spherical-pendulum",
+                     "--set",
+                     "length=1" + unit,
+                     "--set",
+                     "gravity=1" + unit,
+                     "--time",
+                     "1",
+                     "--steps",
+                     "5",
+                     "--momentum",
+                     "0,1" + unit + ",0"};
+    const Outcome right = run(with(flow, {"--from", "0.6" + unit + ",0,-0.8" + unit}));
+    EXPECT_EQ(right.status, 0) << right.err;
+    expect_refused(with(flow, {"--from", "0.6" + unit + ",0,-0.85" + unit}),
+                   AllOf(HasSubstr("--from"), HasSubstr("relative residual 0.0335")));
+  }
+}
+
 TEST(HolonomicScenes, GeodesicsAreFound) {
   // A free fall of the rod along itself would be straight; on the sphere a great circle.
   const Outcome outcome = run({"geodesic",

@@ -344,17 +344,28 @@ class Formulator {
     }
   }
 
-  // lambda from G G'lambda = G (M v - p).
+  // G W, as VelocityConstraints::weigh(): the weight of a coordinate is one over its mass.
+  SymbolicMatrix weighed(const SymbolicMatrix& m, SymbolicMatrix g) {
+    for (int j = 0; j < g.columns; ++j) {
+      const Expression& mass = m(j, j);
+      if (mass.is_constant() && !(mass.coefficient > 0)) continue;
+      for (int i = 0; i < g.rows; ++i) g(i, j) = g(i, j) / mass;
+    }
+    return g;
+  }
+
+  // lambda from G W G'lambda = G W (M v - p).
   void multipliers(const SymbolicMatrix& m,
                    const SymbolicMatrix& g,
                    const SymbolicVector& p,
                    const SymbolicVector& v) {
     if (g.rows == 0) return;
-    const SymbolicCholesky gram(graph_, product(graph_, g, transposed(graph_, g)));
+    const SymbolicMatrix weighted = weighed(m, g);
+    const SymbolicCholesky gram(graph_, product(graph_, weighted, transposed(graph_, g)));
     gram.add_checks(RateStatus::kConstraintRank, out_.lambda_checks);
     SymbolicVector excess = product(graph_, m, v);
     for (std::size_t i = 0; i < excess.size(); ++i) excess[i] = excess[i] - p[i];
-    out_.lambda = gram.solve(product(graph_, g, excess));
+    out_.lambda = gram.solve(product(graph_, weighted, excess));
   }
 
   // v - G'(G G')^-1 g(q, v), g affine in v.

@@ -366,19 +366,17 @@ std::shared_ptr<const void> on_branch(
 
 // ---- of holonomic constraints
 
-HolonomicResiduals holonomic_residuals(const void* opaque, double t, const double* z) {
+void holonomic(
+    const void* opaque, double t, const double* z, double* h, double* dh, double* q_dot) {
   const TextSystem& s = system_of(opaque);
+  s.holonomic.run(at(t, z, kIdle.data(), kIdle.data()), std::array<double*, 2>{h, dh});
   std::vector<double> y = bound(opaque).branch;
   std::array<double, 2 * kMostDof> z_dot{};
-  const bool moves = s.functions.rate(opaque, t, z, y.data(), z_dot.data()) == RateStatus::kOk;
-  const OffManifold off = off_manifold(s, t, z, z_dot.data());
-  HolonomicResiduals residuals;
-  residuals.position = off.position;
-  if (moves) {
-    const double size = largest(z_dot.data(), s.dof);
-    residuals.velocity = size > 0 ? off.velocity / size : 0;
+  if (s.functions.rate(opaque, t, z, y.data(), z_dot.data()) == RateStatus::kOk) {
+    std::copy_n(z_dot.data(), s.dof, q_dot);
+  } else {
+    std::fill_n(q_dot, s.dof, kNaN);
   }
-  return residuals;
 }
 
 // q by Gauss-Newton steps of least norm, as project_configuration(); then p + Dh'mu.
@@ -536,7 +534,7 @@ void connect_dynamics(TextSystem& system) {
   Dynamics::Calls& calls = system.calls;
   if (system.has_chart) calls.chart = chart;
   if (system.holonomic_count > 0) {
-    calls.holonomic_residuals = holonomic_residuals;
+    calls.holonomic = holonomic;
     calls.project_on_manifold = project_on_manifold;
     calls.tangent_projector = tangent_projector;
   }

@@ -130,19 +130,20 @@ class VelocityConstraints {
     return a;
   }
 
-  // lambda from p = M v - G' lambda, by G G' lambda = G (M v - p).
+  // lambda from p = M v - G' lambda, by G W G' lambda = G W (M v - p), with W of weigh().
   template <class T>
   [[nodiscard]] RateStatus multipliers(const Vector<T, kDof>& q,
                                        const Vector<T, kDof>& p,
                                        const Vector<T, kDof>& v,
                                        Vector<T, kMultipliers>& lambda) const {
     if constexpr (kMultipliers > 0) {
+      const Vector<T, kDof> excess = product(scene_.mass(q), v) - p;
       const Matrix<T, kMultipliers, kDof> g = scene_.constraints(q);
-      const Matrix<T, kMultipliers, kMultipliers> gram = product(g, g.transpose());
+      const Matrix<T, kMultipliers, kDof> weighted = weigh(q, g);
+      const Matrix<T, kMultipliers, kMultipliers> gram = product(weighted, g.transpose());
       const Cholesky<T, kMultipliers> factor(gram);
       if (!factor.positive()) return constraint_failure(gram);
-      const Vector<T, kDof> excess = product(scene_.mass(q), v) - p;
-      const Vector<T, kMultipliers> rhs = product(g, excess);
+      const Vector<T, kMultipliers> rhs = product(weighted, excess);
       lambda = factor.solve(rhs);
     }
     return RateStatus::kOk;
@@ -176,16 +177,16 @@ class VelocityConstraints {
   // The velocity in ker G nearest to v in the Euclidean norm.
   template <class T>
   [[nodiscard]] RateStatus project(const Vector<T, kDof>& q, Vector<T, kDof>& v) const {
-    // With p = -v and zero velocity, p = M v - G' lambda reads G' lambda = v in the least squares
-    // sense: the part of v to take away.
-    const Vector<T, kDof> zero = Vector<T, kDof>::Constant(constant<T>(0));
-    const Vector<T, kDof> minus_v = -v;
-    Vector<T, kMultipliers> lambda;
-    const RateStatus status = multipliers(q, minus_v, zero, lambda);
     if constexpr (kMultipliers > 0) {
-      if (status == RateStatus::kOk) v -= product(scene_.constraints(q).transpose(), lambda);
+      const Matrix<T, kMultipliers, kDof> g = scene_.constraints(q);
+      const Matrix<T, kMultipliers, kMultipliers> gram = product(g, g.transpose());
+      const Cholesky<T, kMultipliers> factor(gram);
+      if (!factor.positive()) return constraint_failure(gram);
+      const Vector<T, kMultipliers> violated = product(g, v);
+      const Vector<T, kMultipliers> part = factor.solve(violated);
+      v -= product(g.transpose(), part);
     }
-    return status;
+    return RateStatus::kOk;
   }
 
   // p = M v - G' lambda of the projected velocity; returns |G v| / |v| before the projection.
@@ -203,6 +204,19 @@ class VelocityConstraints {
   }
 
  private:
+  // G W. The weight of a coordinate is one over its mass, or 1 where it has none: whether the rows
+  // of G are independent does not depend on the units of coordinates then.
+  template <class T>
+  [[nodiscard]] Matrix<T, kMultipliers, kDof> weigh(const Vector<T, kDof>& q,
+                                                    Matrix<T, kMultipliers, kDof> g) const {
+    const Matrix<T, kDof, kDof> mass = scene_.mass(q);
+    for (int j = 0; j < kDof; ++j) {
+      if (!(mass(j, j) > constant<T>(0))) continue;
+      for (int i = 0; i < kMultipliers; ++i) g(i, j) /= mass(j, j);
+    }
+    return g;
+  }
+
   template <class T>
   [[nodiscard]] T kinetic(const Vector<T, kDof>& q, const Vector<T, kDof>& v) const {
     const Vector<T, kDof> mv = product(scene_.mass(q), v);

@@ -404,12 +404,19 @@ double momentum(
   return violated;
 }
 
-// With holonomic constraints all coordinates have the unit one, so that what is normal stays it.
-HolonomicResiduals holonomic_residuals(const void* opaque, double t, const double* z) {
+void holonomic(
+    const void* opaque, double t, const double* z, double* h, double* dh, double* q_dot) {
   const Rescaled& r = Rescaled::from(opaque);
-  const std::vector<double> at = phase_point(r, z, z + r.dof());
-  return r.own.calls.holonomic_residuals(r.system(), r.scales.time * t, at.data());
+  const int n = r.dof();
+  const std::vector<double> at = phase_point(r, z, z + n);
+  r.own.calls.holonomic(r.system(), r.scales.time * t, at.data(), h, dh, q_dot);
+  for (int i = 0; i < r.own.holonomic; ++i) {
+    for (int j = 0; j < n; ++j) dh[i * n + j] *= r.z[j];
+  }
+  for (int j = 0; j < n; ++j) q_dot[j] *= r.scales.time / r.z[j];
 }
+
+// With holonomic constraints all coordinates have the unit one, so that what is normal stays it.
 
 bool project_on_manifold(const void* opaque, double t, double* z) {
   const Rescaled& r = Rescaled::from(opaque);
@@ -472,7 +479,7 @@ Dynamics rescaled(const Dynamics& dynamics, const NaturalScales& scales) {
   replace(result.calls.chart, chart);
   replace(result.calls.momentum, momentum);
   result.calls.branch = nullptr;
-  replace(result.calls.holonomic_residuals, holonomic_residuals);
+  replace(result.calls.holonomic, holonomic);
   replace(result.calls.project_on_manifold, project_on_manifold);
   replace(result.calls.tangent_projector, tangent_projector);
   for (Extreme& extreme : result.info.extremes) {
