@@ -72,10 +72,9 @@ inline TextEquations equations_at(const TextSystem& s, const Groups& groups) {
   return equations;
 }
 
-// max of |h| and |Dh v| over max(1, |v|), of which the first alone is the second's `position`.
 struct OffManifold {
-  double position = 0;
-  double velocity = 0;  // |Dh v|
+  double position = 0;  // max |h(q)|
+  double velocity = 0;  // max |Dh v|
 };
 
 inline OffManifold off_manifold(const TextSystem& s,
