@@ -266,7 +266,7 @@ TEST_F(AtlasTest, ShapesArraysLikeTheGrid) {
   for (std::size_t i = 0; i < action.size(); ++i) {
     EXPECT_EQ(std::stod(lines[i + 1][9]), action[i]);
     EXPECT_NEAR(path[9 * i + 6], static_cast<double>(i % 3), 1e-9);  // x at the end
-    EXPECT_NEAR(path[9 * i + 8], -kPi + kPi / 2 * (i / 3), 1e-9);    // theta
+    EXPECT_NEAR(path[9 * i + 8], -kPi + kPi / 6 * static_cast<double>(i - i % 3), 1e-9);  // theta
   }
 }
 

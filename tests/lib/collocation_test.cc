@@ -41,7 +41,7 @@ TEST(CollocationTest, MuOfTwoNodes) {
 TEST(CollocationTest, RoundedWithComplement) {
   for (int i = -40; i <= 60; ++i) {
     const long double x = std::sin(static_cast<long double>(i)) + i / 10.0L;
-    const double rounded = rounded_with_complement<double>(x);
+    const auto rounded = rounded_with_complement<double>(x);
     const double complement = 1 - rounded;
     EXPECT_EQ(rounded + complement, 1) << i;
     EXPECT_EQ(static_cast<long double>(rounded) + complement, 1) << i << ": exact";

@@ -42,7 +42,7 @@ TEST(CompensatedTest, ErrorDoesNotGrowWithTheNumberOfTerms) {
     naive += increment;
     exact += increment;
   }
-  const double value = static_cast<double>(exact);
+  const auto value = static_cast<double>(exact);
   // One rounding of the result; long double itself is wrong by kCount * 5e-20 * 50.
   EXPECT_NEAR(sum.value, value, kEps * value);
   // With the compensation, what is lost is one rounding of each increment, a random walk.

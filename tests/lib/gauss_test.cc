@@ -23,21 +23,22 @@ constexpr double kStageTolerance = 1e6 * kEps;
 // How far the stages are from U_i = z + sum_j mu_ij L_j and L_i = h b_i f(U_i), over their size.
 template <class Step>
 double stage_defect(const Step& step, double h, const State<double, Step::kDof>& before) {
-  constexpr int size = Step::kSize;
+  constexpr int kSize = Step::kSize;
   double defect = 0;
   for (int i = 0; i < Step::kStages; ++i) {
-    Vector<double, size> u = before.value + before.compensation;
+    Vector<double, kSize> u = before.value + before.compensation;
     for (int j = 0; j < Step::kStages; ++j) {
       u += step.tableau().mu(i, j) * step.increments().col(j);
     }
     Vector<double, Step::System::kAlgebraic> y = step.algebraic(i);
-    Vector<double, size> f;
-    const Vector<double, size> stage = step.stages().col(i);
+    Vector<double, kSize> f;
+    const Vector<double, kSize> stage = step.stages().col(i);
     EXPECT_EQ(phase_rate(step.system(), step.stage_time(i), stage, y, f), RateStatus::kOk);
-    const Vector<double, size> increment = h * step.tableau().b[i] * f;
+    const Vector<double, kSize> increment = h * step.tableau().b[i] * f;
     defect = std::max(defect, test::relative_distance(u, stage));
     defect = std::max(
-        defect, test::relative_distance(increment, Vector<double, size>(step.increments().col(i))));
+        defect,
+        test::relative_distance(increment, Vector<double, kSize>(step.increments().col(i))));
   }
   return defect;
 }

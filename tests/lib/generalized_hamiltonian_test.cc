@@ -129,19 +129,19 @@ void expect_form_is_preserved(const Scene& scene,
                               int stages,
                               const Vector<double, Scene::kSize>& start) {
   using System = GeneralizedHamiltonian<Scene>;
-  constexpr int size = 2 * System::kDof;
+  constexpr int kSize = 2 * System::kDof;
   const System system(scene);
   const Matrix<double, Scene::kSize, Scene::kSize> j = scene.structure_matrix();
   const auto tableau = gauss_tableau<double>(stages);
   auto method = method_on(system, tableau);
   auto state = start_at(system, start);
-  const Matrix<double, Scene::kSize, size> before = tangent_of_graph(system, state);
-  Compensated<Matrix<double, size, size>> m{Matrix<double, size, size>::Identity(),
-                                            Matrix<double, size, size>::Zero()};
+  const Matrix<double, Scene::kSize, kSize> before = tangent_of_graph(system, state);
+  Compensated<Matrix<double, kSize, kSize>> m{Matrix<double, kSize, kSize>::Identity(),
+                                              Matrix<double, kSize, kSize>::Zero()};
   const auto go_on = [](long, const auto&, const auto&) { return true; };
   ASSERT_TRUE(tangent_flow(method, StepPlan::equal(0, 3, 30), state, m, go_on).completed());
-  const Matrix<double, Scene::kSize, size> after = tangent_of_graph(system, state) * m.value;
-  const Matrix<double, size, size> change =
+  const Matrix<double, Scene::kSize, kSize> after = tangent_of_graph(system, state) * m.value;
+  const Matrix<double, kSize, kSize> change =
       after.transpose() * j * after - before.transpose() * j * before;
   EXPECT_GT((after - before).norm(), 0.1 * before.norm()) << "something has moved";
   // Round-off of the products of N terms, by their own size.

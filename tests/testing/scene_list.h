@@ -33,7 +33,7 @@ using PlanarScenes = ::testing::Types<scenes::Vehicle, scenes::Unicycle>;
 // Names for TYPED_TEST_SUITE: letters only.
 struct SceneNames {
   template <class Scene>
-  static std::string GetName(int /*index*/) {  // NOLINT: so GoogleTest calls it
+  static std::string GetName(int /*index*/) {
     std::string name = Scene{}.info().name;
     name.erase(std::remove(name.begin(), name.end(), '-'), name.end());
     return name;

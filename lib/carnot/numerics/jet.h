@@ -31,11 +31,13 @@ struct Jet {
   Eigen::Matrix<T, N, 1> v;  // its derivatives
 
   Jet() : Jet(T(0)) {}
+  // NOLINTBEGIN(modernize-pass-by-value): to move a number is to copy it
   Jet(const T& value, const Eigen::Matrix<T, N, 1>& slopes) : a(value), v(slopes) {}
   // A constant.
   Jet(const T& value) : a(value) {
     for (int i = 0; i < N; ++i) v.data()[i] = T(0);
   }
+  // NOLINTEND(modernize-pass-by-value)
   template <class Number>
   requires(std::is_arithmetic_v<Number> && !std::is_same_v<Number, T>) Jet(Number value)
       : Jet(T(value)) {}

@@ -126,7 +126,7 @@ template <class Lane>
 template <class Lane>
 [[gnu::always_inline]] inline SinCos<Lane> turned(const Lane& shifted, const SinCos<Lane>& of_r) {
   using Integer = xsimd::batch<std::int64_t, typename Lane::arch_type>;
-  const Integer quadrant = xsimd::bitwise_cast<Integer>(shifted);
+  const auto quadrant = xsimd::bitwise_cast<Integer>(shifted);
   const auto even = xsimd::bitwise_cast<Lane>(quadrant & Integer(1)) == Lane(0.0);
   const Integer sign(std::numeric_limits<std::int64_t>::min());
   const Lane sine_sign = xsimd::bitwise_cast<Lane>((quadrant << 62) & sign);
