@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -24,11 +23,14 @@ using Numbers = std::vector<double>;
 // Units of (q, p) of the vehicle where that of length is u: momenta of lengths are u per time.
 Numbers units_of_vehicle(double u) { return {u, u, 1, 1, u, u, u * u, u * u}; }
 
+Dynamics vehicle(double u, const std::string& method = "gauss4") {
+  return make_dynamics(scenes::Vehicle{.alpha = u * u, .beta = u * u, .length = u}, method);
+}
+
 // d z(T)/d z(0) of two steps that are too long to be iterated on, in units of length u, told in
 // those of u = 1.
 Numbers tangent_in_units(double u, const std::string& method, double step) {
-  const Dynamics dynamics =
-      make_dynamics(scenes::Vehicle{.alpha = u * u, .beta = u * u, .length = u}, method);
+  const Dynamics dynamics = vehicle(u, method);
   const Numbers units = units_of_vehicle(u);
   Numbers z{0, 0, 0.3, 0.7, 1.1, 0.4, 0.8, -0.9};
   for (int i = 0; i < 2 * n; ++i) z[i] *= units[i];
@@ -59,10 +61,6 @@ TEST(UnitsTest, TangentsOfLongStepsAreTheSameInAllOfThem) {
       }
     }
   }
-}
-
-Dynamics vehicle(double u) {
-  return make_dynamics(scenes::Vehicle{.alpha = u * u, .beta = u * u, .length = u}, "gauss4");
 }
 
 TEST(UnitsTest, MultipliersAreFoundInAllOfThem) {

@@ -401,7 +401,7 @@ TEST_P(HolonomicTwins, ProjectOnTheManifold) {
   std::vector<double> z = start(d);
   ASSERT_TRUE(d.project_on_manifold(0, z));
   EXPECT_LE(d.holonomic_residuals(0, z).position, 8 * kEps);
-  EXPECT_LE(d.holonomic_residuals(0, z).relative_velocity, 64 * kEps);
+  EXPECT_LE(d.holonomic_residuals(0, z).relative_velocity, 8 * kEps);
   std::vector<double> again = z;
   ASSERT_TRUE(d.project_on_manifold(0, again));
   EXPECT_LE(distance(z, again), 64 * kEps * (1 + largest(z)));

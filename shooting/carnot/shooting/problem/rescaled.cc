@@ -417,7 +417,6 @@ void holonomic(
 }
 
 // With holonomic constraints all coordinates have the unit one, so that what is normal stays it.
-
 bool project_on_manifold(const void* opaque, double t, double* z) {
   const Rescaled& r = Rescaled::from(opaque);
   Rescaled::scale(z, r.z, 2 * r.dof(), z);
