@@ -36,6 +36,13 @@ Path turned(Path path, double angle) {
   return path;
 }
 
+// How often starts hit each.
+std::vector<int> starts_of(const std::vector<Hits>& hits) {
+  std::vector<int> starts;
+  for (const Hits& of_one : hits) starts.push_back(of_one.starts);
+  return starts;
+}
+
 struct DiscreteListTest : testing::Test {
   BoundaryValueProblem problem = test::heisenberg_group({1, 0, 0});
   DiscreteList list{problem};
@@ -45,8 +52,8 @@ struct DiscreteListTest : testing::Test {
 TEST_F(DiscreteListTest, KnowsWhatItHasSeen) {
   EXPECT_EQ(list.least(), nullptr);
   EXPECT_EQ(list.find(wiggle(0.1), extremals), 0U);
-  EXPECT_EQ(list.add(wiggle(0.1)), 0U);
-  EXPECT_EQ(list.add(wiggle(0.3)), 1U);
+  EXPECT_EQ(list.add(wiggle(0.1), kOneStart), 0U);
+  EXPECT_EQ(list.add(wiggle(0.3), kOneStart), 1U);
   EXPECT_EQ(list.find(wiggle(0.1), extremals), 0U);
   EXPECT_EQ(list.find(wiggle(0.3 + 1e-9), extremals), 1U);
   EXPECT_EQ(list.find(wiggle(0.2), extremals), list.size());
@@ -57,14 +64,14 @@ TEST_F(DiscreteListTest, MirrorPartnersAreTheSame) {
   const std::vector<ProblemSymmetry> symmetries = symmetries_of(problem);
   ASSERT_FALSE(symmetries.empty());
   const Path path = turned(wiggle(0.2), 0.4);
-  list.add(path);
+  list.add(path, kOneStart);
   for (const ProblemSymmetry& symmetry : symmetries) {
     EXPECT_EQ(list.find(partner(problem.dynamics.info, symmetry, path), extremals), 0U);
   }
 }
 
 TEST_F(DiscreteListTest, MembersOfAFamilyAreTheSame) {
-  list.add(wiggle(0.2));
+  list.add(wiggle(0.2), kOneStart);
   const Path member = turned(wiggle(0.2), 0.4);
   EXPECT_EQ(list.find(member, extremals), list.size());
   Extremal found;
@@ -76,7 +83,7 @@ TEST_F(DiscreteListTest, MembersOfAFamilyAreTheSame) {
 }
 
 TEST_F(DiscreteListTest, WhatIsClearlyLongerWaits) {
-  for (const double size : {0.5, 0.1, 0.12}) list.add(wiggle(size));
+  for (const double size : {0.5, 0.1, 0.12}) list.add(wiggle(size), kOneStart);
   EXPECT_LT(list[1].action, list[2].action);
   EXPECT_EQ(list.least(), &list[1].path);
   std::vector<std::size_t> pending{0, 1, 2};
@@ -85,7 +92,7 @@ TEST_F(DiscreteListTest, WhatIsClearlyLongerWaits) {
 }
 
 TEST_F(DiscreteListTest, OnlyVerifiedOnesAreMeasuresOnceThereAreAny) {
-  for (const double size : {0.5, 0.1, 0.48}) list.add(wiggle(size));
+  for (const double size : {0.5, 0.1, 0.48}) list.add(wiggle(size), kOneStart);
   list[0].fate = Fate::kExtremal;
   list[1].fate = Fate::kArtefact;
   std::vector<std::size_t> pending{2};
@@ -94,7 +101,7 @@ TEST_F(DiscreteListTest, OnlyVerifiedOnesAreMeasuresOnceThereAreAny) {
 }
 
 TEST_F(DiscreteListTest, IsKnownOnTheGridsThatItWasRefinedTo) {
-  list.add(wiggle(0.1));
+  list.add(wiggle(0.1), kOneStart);
   EXPECT_EQ(list.refine(0, {wiggle(0.11, 64), wiggle(0.12, 128)}, extremals), 0U);
   EXPECT_EQ(list.find(wiggle(0.1), extremals), 0U);
   EXPECT_EQ(list.find(wiggle(0.11, 64), extremals), 0U);
@@ -104,11 +111,11 @@ TEST_F(DiscreteListTest, IsKnownOnTheGridsThatItWasRefinedTo) {
 
 // A coarse grid makes two of it.
 TEST_F(DiscreteListTest, WhatIsTheSameOnAFinerGridIsMerged) {
-  list.add(wiggle(0.1));
-  list.add(wiggle(0.3));
+  list.add(wiggle(0.1), kOneStart);
+  list.add(wiggle(0.3), kOneStart);
   ASSERT_EQ(list.refine(0, {wiggle(0.2, 64)}, extremals), 0U);
   EXPECT_EQ(list.refine(1, {wiggle(0.25, 64), wiggle(0.2, 128)}, extremals), 1U);
-  list.add(wiggle(0.4));
+  list.add(wiggle(0.4), kOneStart);
   EXPECT_EQ(list.refine(2, {wiggle(0.2, 64)}, extremals), 0U);
   EXPECT_EQ(list[2].fate, Fate::kMerged);
   EXPECT_EQ(list.find(wiggle(0.4), extremals), 0U);
@@ -127,7 +134,7 @@ TEST_F(DiscreteListTest, ForetellsTheAction) {
     }
     return path;
   };
-  list.add(lifted(32));
+  list.add(lifted(32), kOneStart);
   EXPECT_FALSE(std::isfinite(list[0].uncertainty));
   list.refine(0, {lifted(64)}, extremals);
   const double exact = 0.5 + 0.25 * kSize * kSize * kPi * kPi;  // int (x'^2 + y'^2) / 2
@@ -139,7 +146,7 @@ TEST_F(DiscreteListTest, ForetellsTheAction) {
 }
 
 TEST_F(DiscreteListTest, RivalsAreToldByFinerGrids) {
-  for (const double size : {0.1, 0.11, 0.5}) list.add(wiggle(size));
+  for (const double size : {0.1, 0.11, 0.5}) list.add(wiggle(size), kOneStart);
   for (std::size_t i = 0; i < 3; ++i) {
     list[i].estimate = list[i].action;
     list[i].uncertainty = 0.01 * list[i].action;
@@ -148,25 +155,35 @@ TEST_F(DiscreteListTest, RivalsAreToldByFinerGrids) {
   EXPECT_THAT(list.beyond_rivals({0, 1, 2}, 0.5 * list[0].action), testing::ElementsAre(0, 1, 2));
   list[2].uncertainty = 1;
   EXPECT_TRUE(list.beyond_rivals({0, 1, 2}, 1e300).empty()) << "it may be one";
-  list.add(wiggle(0.6));
+  list.add(wiggle(0.6), kOneStart);
   EXPECT_TRUE(list.beyond_rivals({0, 3}, 1e300).empty()) << "not refined: it may be one";
 }
 
 TEST_F(DiscreteListTest, GivesUp) {
-  for (const double size : {0.1, 0.5, 0.6}) list.add(wiggle(size));
-  list[2].hits = 3;
-  EXPECT_EQ(list.give_up({1, 2}), 4);
-  EXPECT_THAT(list.hits_given_up(), testing::ElementsAre(1, 3));
+  for (const double size : {0.1, 0.5, 0.6}) list.add(wiggle(size), kOneStart);
+  list[2].hits = {3, 2};
+  EXPECT_EQ(list.give_up({1, 2}).starts, 4);
+  EXPECT_THAT(starts_of(list.hits_given_up()), testing::ElementsAre(1, 3));
   EXPECT_EQ(list[0].fate, Fate::kPending);
 }
 
+TEST_F(DiscreteListTest, ThoseOfLeastActionThatLeadOnComeFirst) {
+  for (const double size : {0.5, 0.1, 0.3, 0.2, 0.4}) list.add(wiggle(size), kOneStart);
+  EXPECT_TRUE(list.least(5).empty()) << "none is known to be an extremal";
+  for (const std::size_t i : {0, 1, 2}) list[i].fate = Fate::kExtremal;
+  list[3].fate = Fate::kArtefact;
+  list[4].fate = Fate::kGivenUp;
+  EXPECT_THAT(list.least(3), testing::ElementsAre(&list[1].path, &list[2].path, &list[4].path));
+  EXPECT_EQ(list.least(9).size(), 4U);
+}
+
 TEST_F(DiscreteListTest, GivenUpOnesOfTheGridThatSawMoreOfThemCount) {
-  list.add(wiggle(0.5));
-  for (const double size : {0.5, 0.6}) list.add(wiggle(size, 64));
-  EXPECT_EQ(list.give_up({0, 1, 2}), 3);
-  EXPECT_THAT(list.hits_given_up(), testing::ElementsAre(1, 1));
-  list[0].hits = 3;
-  EXPECT_THAT(list.hits_given_up(), testing::ElementsAre(3));
+  list.add(wiggle(0.5), kOneStart);
+  for (const double size : {0.5, 0.6}) list.add(wiggle(size, 64), kOneStart);
+  EXPECT_EQ(list.give_up({0, 1, 2}).all(), 3);
+  EXPECT_THAT(starts_of(list.hits_given_up()), testing::ElementsAre(1, 1));
+  list[0].hits = {3, 0};
+  EXPECT_THAT(starts_of(list.hits_given_up()), testing::ElementsAre(3));
 }
 
 }  // namespace

@@ -59,17 +59,22 @@ TEST(ExtremalList, OneMemberStandsForAFamily) {
   EXPECT_EQ(list.add(member), 1U);
 }
 
+testing::Matcher<Hits> are(int starts, int crossings) {
+  return testing::AllOf(testing::Field(&Hits::starts, starts),
+                        testing::Field(&Hits::crossings, crossings));
+}
+
 TEST(ExtremalList, PartnersAreHitTogether) {
   ExtremalList list(mirrored);
   list.add(extremal(2, 0.4));
   list.add(extremal(1, 0.3));
   ASSERT_EQ(list.size(), 4U);
   EXPECT_EQ(list[1].path[1][0], -0.4);
-  list.hit(0);
-  list.hit(1, 4);
-  EXPECT_THAT(list.hits(), testing::ElementsAre(5));
-  list.hit(3);
-  EXPECT_THAT(list.hits(), testing::ElementsAre(5, 1));
+  list.hit(0, {1, 0});
+  list.hit(1, {1, 3});
+  EXPECT_THAT(list.hits(), testing::ElementsAre(are(2, 3)));
+  list.hit(3, {0, 1});
+  EXPECT_THAT(list.hits(), testing::ElementsAre(are(2, 3), are(0, 1)));
   std::vector<int> hits;
   for (const Extremal& each : list.up_to(kUnlimited)) hits.push_back(each.geodesic.hits);
   EXPECT_THAT(hits, testing::ElementsAre(5, 5, 1, 1));
@@ -91,10 +96,10 @@ TEST(ExtremalList, CompetitionForTheLeastAction) {
   list.add(extremal(1 + 1e-12, 0.2));
   list.add(extremal(1, 0.3));
   list.add(extremal(1.01, 0.4));
-  for (std::size_t i = 0; i < list.size(); ++i) list.hit(i, 1 << i);
+  for (int i = 0; i < 4; ++i) list.hit(i, {1 << i, i});
   EXPECT_EQ(list.best(), 2U);
   EXPECT_EQ(list.least_action(), 1);
-  EXPECT_EQ(list.competition().hits, 2 + 4);
+  EXPECT_THAT(list.competition().hits, are(2 + 4, 1 + 2));
   EXPECT_EQ(list.competition().rivals, 3);
 }
 

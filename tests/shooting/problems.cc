@@ -94,6 +94,10 @@ BoundaryValueProblem engel(std::vector<double> to) {
   return {dynamics("engel"), {0, 0, 0, 0}, std::move(to)};
 }
 
+BoundaryValueProblem falling_cat(std::vector<double> to) {
+  return {dynamics("falling-cat"), {0, 0, 0}, std::move(to)};
+}
+
 BoundaryValueProblem unicycle(std::vector<double> from, std::vector<double> to) {
   return {dynamics("unicycle"), std::move(from), std::move(to)};
 }

@@ -20,6 +20,7 @@ BoundaryValueProblem vehicle_cosine(std::vector<double> from, std::vector<double
 BoundaryValueProblem heisenberg_group(std::vector<double> to, double time = 1);  // from the origin
 BoundaryValueProblem martinet(std::vector<double> to);                           // the same
 BoundaryValueProblem engel(std::vector<double> to);                              // the same
+BoundaryValueProblem falling_cat(std::vector<double> to);                        // the same
 BoundaryValueProblem unicycle(std::vector<double> from, std::vector<double> to);
 BoundaryValueProblem grushin(std::vector<double> from, std::vector<double> to);
 BoundaryValueProblem bicycle(std::vector<double> to);  // from the origin; singular at delta = pi/2

@@ -90,26 +90,54 @@ TEST(StoppingPolicy, MayEndEarlyWhereMostConverge) {
 
 TEST(StoppingPolicy, EndsWhenTheLeastActionIsHitOftenEnough) {
   const StoppingPolicy policy(options_for(1), true, false);
-  EXPECT_TRUE(policy.ends({16, 16, 0, 16}, {3, 1}));
-  EXPECT_FALSE(policy.ends({16, 16, 0, 16}, {2, 1}));
-  EXPECT_FALSE(policy.ends({16, 16, 0, 15}, {8, 2})) << "a rival asks for more";
-  EXPECT_FALSE(policy.ends({24, 24, 0, 19}, {8, 2})) << "ten of them";
-  EXPECT_TRUE(policy.ends({24, 24, 0, 20}, {8, 2}));
+  EXPECT_TRUE(policy.ends({16, 16, 0, 16}, {{3, 0}, 1}));
+  EXPECT_FALSE(policy.ends({16, 16, 0, 16}, {{2, 0}, 1}));
+  EXPECT_FALSE(policy.ends({16, 16, 0, 15}, {{8, 0}, 2})) << "a rival asks for more";
+  EXPECT_FALSE(policy.ends({24, 24, 0, 19}, {{8, 0}, 2})) << "ten of them";
+  EXPECT_TRUE(policy.ends({24, 24, 0, 20}, {{8, 0}, 2}));
   // Sooner only without a rival.
-  EXPECT_TRUE(policy.ends({12, 12, 0, 12}, {8, 1}));
-  EXPECT_FALSE(policy.ends({12, 12, 0, 12}, {7, 1}));
-  EXPECT_FALSE(policy.ends({12, 12, 0, 16}, {12, 2}));
+  EXPECT_TRUE(policy.ends({12, 12, 0, 12}, {{8, 0}, 1}));
+  EXPECT_FALSE(policy.ends({12, 12, 0, 12}, {{7, 0}, 1}));
+  EXPECT_FALSE(policy.ends({12, 12, 0, 16}, {{12, 0}, 2}));
+}
+
+// Crossings are made of what is known: that they find it again does not say that nothing is missed.
+TEST(StoppingPolicy, CrossingsAreNoIndependentStarts) {
+  const StoppingPolicy policy(options_for(1), true, false);
+  EXPECT_TRUE(policy.ends({100, 80, 0, 60, 0, 20, 20}, {{8, 9}, 4}));
+  EXPECT_FALSE(policy.ends({100, 80, 0, 60, 0, 20, 21}, {{8, 9}, 4})) << "39 starts converged";
+  EXPECT_FALSE(policy.ends({100, 80, 0, 60, 0, 20, 20}, {{2, 15}, 4}));
+}
+
+TEST(StoppingPolicy, CrossingsTakeTurnsWithManyStarts) {
+  const StoppingPolicy policy(options_for(1), true, false);
+  const auto after = [](int drawn, int crossed) {
+    SearchTally tally;
+    tally.drawn = drawn;
+    tally.crossed = crossed;
+    return tally;
+  };
+  EXPECT_FALSE(policy.turn_of_crossings(after(64, 0)));
+  EXPECT_TRUE(policy.turn_of_crossings(after(72, 0)));
+  EXPECT_FALSE(policy.turn_of_crossings(after(72, 8)));
+  EXPECT_TRUE(policy.turn_of_crossings(after(80, 8)));
+  EXPECT_EQ(policy.left(after(72, 8)), 2 * policy.left({}) - 80) << "the limit is higher with them";
+  // Where more than the best is wanted there are sweeps. Near targets are relaxed elsewhere.
+  EXPECT_FALSE(StoppingPolicy(options_for(4), true, false).turn_of_crossings(after(72, 0)));
+  EXPECT_FALSE(StoppingPolicy(options_for(1), true, true).turn_of_crossings(after(72, 0)));
+  EXPECT_EQ(StoppingPolicy(options_for(1, false, 100), true, false).left(after(72, 8)), 20);
 }
 
 TEST(StoppingPolicy, GoesOnWhereSomethingWasMissedByChaosEstimate) {
   StoppingPolicy policy(options_for(1), true, false);
-  EXPECT_TRUE(policy.ends({24, 24, 0, 24}, {8, 1, 0.5}));
-  EXPECT_FALSE(policy.ends({24, 24, 0, 24}, {8, 1, 1}));
-  EXPECT_FALSE(policy.ends({64, 64, 0, 64}, {19, 1, 50}));
-  EXPECT_TRUE(policy.ends({64, 64, 0, 64}, {20, 1, 50})) << "whatever it says";
+  EXPECT_TRUE(policy.ends({24, 24, 0, 24}, {{8, 0}, 1, 0.5}));
+  EXPECT_FALSE(policy.ends({24, 24, 0, 24}, {{8, 0}, 1, 1}));
+  EXPECT_FALSE(policy.ends({64, 64, 0, 64}, {{19, 40}, 1, 50}));
+  EXPECT_TRUE(policy.ends({64, 64, 0, 64}, {{20, 0}, 1, 50})) << "whatever it says";
+  EXPECT_TRUE(policy.ends({64, 64, 0, 64}, {{12, 48}, 1, 50})) << "with those by crossings";
   // Starts of drift say too little for an estimate.
   policy.plan_for(8, 40);
-  EXPECT_TRUE(policy.ends({24, 24, 0, 24}, {8, 1, 1}));
+  EXPECT_TRUE(policy.ends({24, 24, 0, 24}, {{8, 0}, 1, 1}));
 }
 
 }  // namespace

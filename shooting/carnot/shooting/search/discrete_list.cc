@@ -54,8 +54,11 @@ std::size_t DiscreteList::find(const Path& path, const ExtremalList& extremals) 
   return list_.size();
 }
 
-std::size_t DiscreteList::add(const Path& path) {
-  list_.push_back({path, action_of(path)});
+std::size_t DiscreteList::add(const Path& path, const Hits& found) {
+  DiscreteExtremal& added = list_.emplace_back();
+  added.path = path;
+  added.action = action_of(path);
+  added.hits = found;
   return list_.size() - 1;
 }
 
@@ -123,8 +126,8 @@ std::vector<std::size_t> DiscreteList::beyond_rivals(const std::vector<std::size
   return beyond;
 }
 
-int DiscreteList::give_up(const std::vector<std::size_t>& pending) {
-  int hits = 0;
+Hits DiscreteList::give_up(const std::vector<std::size_t>& pending) {
+  Hits hits;
   for (const std::size_t i : pending) {
     list_[i].fate = Fate::kGivenUp;
     hits += list_[i].hits;
@@ -132,15 +135,16 @@ int DiscreteList::give_up(const std::vector<std::size_t>& pending) {
   return hits;
 }
 
-std::vector<int> DiscreteList::hits_given_up() const {
-  std::map<int, std::vector<int>> hits;  // by intervals
+std::vector<Hits> DiscreteList::hits_given_up() const {
+  std::map<int, std::vector<Hits>> hits;  // by intervals
   for (const DiscreteExtremal& known : list_) {
     if (known.fate == Fate::kGivenUp) hits[known.path.intervals].push_back(known.hits);
   }
-  std::vector<int> most;
+  std::vector<Hits> most;
   for (auto& [intervals, of_grid] : hits) {
-    const auto total = [](const std::vector<int>& x) {
-      return std::accumulate(x.begin(), x.end(), 0);
+    const auto total = [](const std::vector<Hits>& x) {
+      return std::accumulate(
+          x.begin(), x.end(), 0, [](int sum, const Hits& one) { return sum + one.starts; });
     };
     if (total(of_grid) > total(most)) most = std::move(of_grid);
   }
@@ -153,6 +157,21 @@ const Path* DiscreteList::least() const {
         return a.action < b.action;
       });
   return least == list_.end() ? nullptr : &least->path;
+}
+
+std::vector<const Path*> DiscreteList::least(int count) const {
+  std::vector<const DiscreteExtremal*> known;
+  for (const DiscreteExtremal& extremal : list_) {
+    const bool leads_on = extremal.fate == Fate::kExtremal || extremal.fate == Fate::kGivenUp;
+    if (leads_on) known.push_back(&extremal);
+  }
+  std::stable_sort(known.begin(), known.end(), [](const auto* a, const auto* b) {
+    return a->action < b->action;
+  });
+  if (known.size() > static_cast<std::size_t>(count)) known.resize(count);
+  std::vector<const Path*> paths;
+  for (const DiscreteExtremal* extremal : known) paths.push_back(&extremal->path);
+  return paths;
 }
 
 }  // namespace carnot::internal

@@ -34,7 +34,7 @@ struct DiscreteExtremal {
   double action = 0;
   Fate fate = Fate::kPending;
   std::size_t extremal = 0;  // the index of the one that it became
-  int hits = 1;              // how often it was seen before it became one
+  Hits hits;                 // how often it was seen before it became one
   int descents = 0;          // how often the ways down from it were taken, on finer grids each
   std::vector<DiscretePath> others;  // the same on finer grids, and what was merged into it
   // The action without the error of the grids, and how much that may be off. Of two grids the
@@ -63,8 +63,8 @@ class DiscreteList {
   // The index of a path with the same nodes, or with those of a mirror partner, on the same grid;
   // size() where the path is new. All members of one family of `extremals` count as the same.
   [[nodiscard]] std::size_t find(const Path& path, const ExtremalList& extremals) const;
-  // Adds a path that is new. Returns its index.
-  std::size_t add(const Path& path);
+  // Adds a path that is new, with the hit that found it. Returns its index.
+  std::size_t add(const Path& path, const Hits& found);
   // Remembers what it is on finer grids, from coarse to fine. Where one of these is known already,
   // it is merged into the known one. Returns the index of the one that it is now.
   std::size_t refine(std::size_t index,
@@ -78,13 +78,16 @@ class DiscreteList {
   [[nodiscard]] std::vector<std::size_t> beyond_rivals(const std::vector<std::size_t>& refined,
                                                        double least) const;
   // Gives these up. Returns how often they were seen.
-  int give_up(const std::vector<std::size_t>& pending);
+  Hits give_up(const std::vector<std::size_t>& pending);
 
   // How often each of those given up was seen: of the grid where that was most often, for another
   // grid shows the same ones again.
-  [[nodiscard]] std::vector<int> hits_given_up() const;
+  [[nodiscard]] std::vector<Hits> hits_given_up() const;
   // The path of least action; null where there is none.
   [[nodiscard]] const Path* least() const;
+  // At most `count` paths of extremals and of those given up, least action first. They are valid
+  // until the list changes.
+  [[nodiscard]] std::vector<const Path*> least(int count) const;
 
  private:
   [[nodiscard]] double action_of(const Path& path) const;

@@ -19,7 +19,7 @@ std::size_t ExtremalList::add(const Extremal& extremal, std::size_t partner_of) 
   }
   const std::size_t index = list_.size();
   list_.push_back(extremal);
-  hits_.push_back(0);
+  hits_.emplace_back();
   partner_of_.push_back(partner_of);
   if (!partners_) return index;
   for (const Extremal& partner : partners_(extremal)) add(partner, index);
@@ -45,9 +45,11 @@ Competition ExtremalList::competition() const {
   return competition;
 }
 
-std::vector<int> ExtremalList::hits() const {
-  std::vector<int> hits;
-  std::copy_if(hits_.begin(), hits_.end(), std::back_inserter(hits), [](int n) { return n > 0; });
+std::vector<Hits> ExtremalList::hits() const {
+  std::vector<Hits> hits;
+  std::copy_if(hits_.begin(), hits_.end(), std::back_inserter(hits), [](const Hits& of_one) {
+    return of_one.all() > 0;
+  });
   return hits;
 }
 
@@ -56,7 +58,7 @@ std::vector<Extremal> ExtremalList::up_to(double max_length) const {
   for (std::size_t i = 0; i < list_.size(); ++i) {
     if (list_[i].geodesic.length.value_or(0) > max_length) continue;
     list.push_back(list_[i]);
-    list.back().geodesic.hits = hits_[root(i)];
+    list.back().geodesic.hits = hits_[root(i)].all();
   }
   return list;
 }

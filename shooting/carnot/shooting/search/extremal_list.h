@@ -9,12 +9,13 @@
 #include <vector>
 
 #include "carnot/shooting/extremal/verification.h"
+#include "carnot/shooting/search/hits.h"
 
 namespace carnot::internal {
 
 // How sure it is that nothing has less action than the best extremal.
 struct Competition {
-  int hits = 0;       // of the least action; mirror partners count together
+  Hits hits;          // of the least action; mirror partners count together
   int rivals = 0;     // extremals whose action is near the least, the best among them
   double missed = 0;  // how many extremals more there are, by Chao's estimate
 };
@@ -33,8 +34,8 @@ class ExtremalList {
   // Adds the extremal, and its partners, where it is new. Where it is known by knots only and the
   // new one needs none, that takes its place. Returns the index in the list.
   std::size_t add(const Extremal& extremal);
-  // Counts `times` hits of the extremal, or of the one that stands for it.
-  void hit(std::size_t index, int times = 1) { hits_[root(index)] += times; }
+  // Counts hits of the extremal, or of the one that stands for it.
+  void hit(std::size_t index, const Hits& hits) { hits_[root(index)] += hits; }
 
   [[nodiscard]] bool empty() const { return list_.empty(); }
   [[nodiscard]] std::size_t size() const { return list_.size(); }
@@ -47,8 +48,8 @@ class ExtremalList {
   [[nodiscard]] std::size_t best() const;
   [[nodiscard]] double least_action() const { return list_[best()].geodesic.action; }
   [[nodiscard]] Competition competition() const;
-  // How often each was hit, one number for all partners; without those that no start led to.
-  [[nodiscard]] std::vector<int> hits() const;
+  // How often each was hit, together with its partners; without those that nothing led to.
+  [[nodiscard]] std::vector<Hits> hits() const;
   // Those not longer than `max_length`, with their hits.
   [[nodiscard]] std::vector<Extremal> up_to(double max_length) const;
 
@@ -64,7 +65,7 @@ class ExtremalList {
 
   Partners partners_;
   std::vector<Extremal> list_;
-  std::vector<int> hits_;
+  std::vector<Hits> hits_;
   std::vector<std::size_t> partner_of_;  // the extremal whose mirror image it is, or kNone
 };
 

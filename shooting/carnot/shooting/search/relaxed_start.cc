@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "carnot/shooting/path/discrete_newton.h"
-#include "carnot/shooting/search/starts.h"
 
 namespace carnot::internal {
 namespace {
@@ -18,36 +17,46 @@ double largest_momentum(const Path& path) {
 
 }  // namespace
 
-RelaxedStart relaxed_start(const BoundaryValueProblem& problem,
-                           const std::optional<NearTarget>& near,
-                           const RelaxedStartOptions& options,
-                           int i) {
+RelaxedStart relaxed(const BoundaryValueProblem& problem, const Start& start, int stiffness) {
   // A path may collapse to the straight line, which violates the constraints, or be on its way
   // there. A stiffer penalty holds it.
   constexpr double kCollapsed = 0.5;
   constexpr double kHeld = 0.02;
   constexpr int kAttempts = 3;
   constexpr double kStiffer = 8;
-  const NearTarget::Way way = near ? near->way(i) : NearTarget::Way{};
-  const BoundaryValueProblem easy = near ? near->easy(way) : problem;
-  const Start start = make_start(easy, options.seed, i, options.intervals);
   RelaxationOptions relaxation = start.relaxation;
   RelaxedStart result;
-  relaxation.penalty *= std::pow(kStiffer, options.stiffness);
+  relaxation.penalty *= std::pow(kStiffer, stiffness);
   for (; result.stiffness < kAttempts; ++result.stiffness, relaxation.penalty *= kStiffer) {
     result.path = start.path;
-    const double violation = relax(easy, relaxation, result.path).violation;
+    const double violation = relax(problem, relaxation, result.path).violation;
     if (!(violation < kCollapsed)) continue;
     Path path = result.path;
-    const DiscreteNewton tightened = tighten(easy, {}, path);
-    result.blocked = tightened.left_chart || skims_chart_end(easy.dynamics, path);
+    const DiscreteNewton tightened = tighten(problem, {}, path);
+    result.blocked = tightened.left_chart || skims_chart_end(problem.dynamics, path);
     result.found = tightened.converged && !result.blocked;
-    result.relaxed = !result.blocked && !near;
+    result.relaxed = !result.blocked;
     result.residual = tightened.residual / largest_momentum(path);
     if (result.found) result.path = std::move(path);
     if (result.found || violation < kHeld || result.stiffness > 0) break;
   }
-  if (result.found && near) result.found = near->shrink(way, result.path);
+  return result;
+}
+
+RelaxedStart relaxed_start(const BoundaryValueProblem& problem,
+                           const std::optional<NearTarget>& near,
+                           const RelaxedStartOptions& options,
+                           int i) {
+  if (!near) {
+    const Start start = make_start(problem, options.seed, i, options.intervals);
+    return relaxed(problem, start, options.stiffness);
+  }
+  const NearTarget::Way way = near->way(i);
+  const BoundaryValueProblem easy = near->easy(way);
+  const Start start = make_start(easy, options.seed, i, options.intervals);
+  RelaxedStart result = relaxed(easy, start, options.stiffness);
+  result.relaxed = false;
+  if (result.found) result.found = near->shrink(way, result.path);
   return result;
 }
 

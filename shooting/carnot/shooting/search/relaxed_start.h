@@ -8,6 +8,7 @@
 #include "carnot/shooting/boundary_value_problem.h"
 #include "carnot/shooting/path/path.h"
 #include "carnot/shooting/search/near_target.h"
+#include "carnot/shooting/search/starts.h"
 
 namespace carnot::internal {
 
@@ -32,5 +33,9 @@ RelaxedStart relaxed_start(const BoundaryValueProblem& problem,
                            const std::optional<NearTarget>& near,
                            const RelaxedStartOptions& options,
                            int i);
+
+// The same from a start of any origin, without a near target. The penalty is raised `stiffness`
+// times before the first attempt.
+RelaxedStart relaxed(const BoundaryValueProblem& problem, const Start& start, int stiffness);
 
 }  // namespace carnot::internal

@@ -53,7 +53,11 @@ bool Search::run() {
   constexpr int kMaxDescents = 4;  // sweeps below an extremal that is no minimum
   const bool by_paths = problem_.dynamics.has_transcription();
   const int sweeps = policy_.sweeps();
-  const auto goes_on = [&](double share) { return !options_.progress || options_.progress(share); };
+  double shown = 0;  // does not fall where crossings raise the limit
+  const auto goes_on = [&](double share) {
+    shown = std::max(shown, share);
+    return !options_.progress || options_.progress(shown);
+  };
   const auto is_late = [&] { return timed_out_ = deadline_.passed(); };
   if (near_) shoot_straight();
   int descents = 0;
@@ -69,7 +73,8 @@ bool Search::run() {
     if (by_paths && descends_ && descents < kMaxDescents) {
       if (!descend_round()) sweep_round(descents++);
     } else if (by_paths) {
-      relax_round(policy_.round(tally_));
+      const bool crossed = policy_.turn_of_crossings(tally_) && cross_round(policy_.round(tally_));
+      if (!crossed) relax_round(policy_.round(tally_));
     } else if (drift_ && !turn_of_momenta()) {
       drift_round(policy_.round(tally_));
     } else {
@@ -97,9 +102,9 @@ void Search::polish_guess() {
 }
 
 std::vector<int> Search::hits() const {
-  std::vector<int> hits = extremals_.hits();
-  const std::vector<int> given_up = discrete_.hits_given_up();
-  hits.insert(hits.end(), given_up.begin(), given_up.end());
+  std::vector<int> hits;
+  for (const Hits& of_one : extremals_.hits()) hits.push_back(of_one.starts);
+  for (const Hits& of_one : discrete_.hits_given_up()) hits.push_back(of_one.starts);
   return hits;
 }
 
@@ -107,7 +112,7 @@ bool Search::counts() const {
   constexpr int kOften = 5;
   if (problem_.dynamics.has_transcription()) return true;
   const std::vector<int> counted = hits();
-  return !extremals_.empty() && extremals_.competition().hits >= kOften &&
+  return !extremals_.empty() && extremals_.competition().hits.starts >= kOften &&
          std::count(counted.begin(), counted.end(), 1) == 0;
 }
 
@@ -125,36 +130,38 @@ bool Search::settled() const {
   return policy_.ends(tally_, competition);
 }
 
-void Search::note(const Path& path, std::vector<std::size_t>& fresh) {
+void Search::note(const Path& path, const Hits& found, std::vector<std::size_t>& fresh) {
   const std::size_t index = discrete_.find(path, extremals_);
   if (index == discrete_.size()) {
-    fresh.push_back(discrete_.add(path));
+    fresh.push_back(discrete_.add(path, found));
     return;
   }
-  hit(discrete_[index], 1);
+  hit(discrete_[index], found);
 }
 
-void Search::hit(DiscreteExtremal& known, int times) {
-  if (known.fate == Fate::kExtremal) extremals_.hit(known.extremal, times);
-  if (known.fate == Fate::kExtremal || known.fate == Fate::kGivenUp) tally_.converged += times;
-  if (known.fate == Fate::kPending || known.fate == Fate::kGivenUp) known.hits += times;
-  if (known.fate == Fate::kTooRough) tally_.rough += times;
+void Search::hit(DiscreteExtremal& known, const Hits& hits) {
+  if (known.fate == Fate::kExtremal) extremals_.hit(known.extremal, hits);
+  if (known.fate == Fate::kExtremal || known.fate == Fate::kGivenUp) {
+    tally_.converged += hits.all();
+  }
+  if (known.fate == Fate::kPending || known.fate == Fate::kGivenUp) known.hits += hits;
+  if (known.fate == Fate::kTooRough) tally_.rough += hits.all();
 }
 
-Search::Polished Search::absorb(const std::vector<RelaxedStart>& starts) {
+Search::Polished Search::absorb(const std::vector<RelaxedStart>& starts, const Hits& each) {
   tally_.starts += static_cast<int>(starts.size());
   std::vector<std::size_t> pending;
   for (const RelaxedStart& start : starts) {
     least_residual_ = std::min(least_residual_, start.residual);
     tally_.blocked += start.blocked ? 1 : 0;
-    if (start.found) note(start.path, pending);
+    if (start.found) note(start.path, each, pending);
   }
   const bool only_least = !policy_.wants_more() && !std::isfinite(options_.max_length);
   Polished tally;
   while (!pending.empty()) {
     const auto next = only_least ? discrete_.take_promising(pending) : std::exchange(pending, {});
     if (next.empty()) {
-      tally_.converged += discrete_.give_up(pending);
+      tally_.converged += discrete_.give_up(pending).all();
       break;
     }
     Refinements refined = refine_all(next, tally);
@@ -191,7 +198,7 @@ void Search::give_up_beyond_rivals(Refinements& refined) {
   const double infinity = std::numeric_limits<double>::infinity();
   const double least = extremals_.empty() ? infinity : extremals_.least_action();
   const std::vector<std::size_t> beyond = discrete_.beyond_rivals(indices, least);
-  tally_.converged += discrete_.give_up(beyond);
+  tally_.converged += discrete_.give_up(beyond).all();
   std::erase_if(refined,
                 [&](const auto& item) { return discrete_[item.first].fate == Fate::kGivenUp; });
 }
@@ -209,7 +216,7 @@ void Search::polish_all(const Refinements& refined, Polished& tally) {
     // No finer grid helps there: with them sideways parking to 1e-22 took 15 s to say so, not 7.
     if (polished[i].reason == Reason::kBeyondDouble) {
       discrete.fate = Fate::kTooRough;
-      tally_.rough += discrete.hits;
+      tally_.rough += discrete.hits.all();
       continue;
     }
     if (!polished[i].extremal) {
@@ -224,14 +231,14 @@ void Search::polish_all(const Refinements& refined, Polished& tally) {
     if (!discrete.foretells(polished[i].extremal->geodesic.action)) discrete.others.clear();
     discrete.extremal = extremals_.add(*polished[i].extremal);
     extremals_.hit(discrete.extremal, discrete.hits);
-    tally_.converged += discrete.hits;
+    tally_.converged += discrete.hits.all();
     ++tally.good;
   }
 }
 
 void Search::take(const std::optional<Extremal>& extremal) {
   if (!extremal) return;
-  extremals_.hit(extremals_.add(*extremal));
+  extremals_.hit(extremals_.add(*extremal), kOneStart);
   ++tally_.converged;
 }
 

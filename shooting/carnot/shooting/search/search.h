@@ -1,9 +1,10 @@
 // The search for extremals, round by round.
 //
-// Rounds of starts are relaxed, tightened and, where new, polished and verified; rounds of near
-// hits follow where more than the best is wanted. What is found goes into two lists
-// (extremal_list.h, discrete_list.h), and stopping_policy.h says when it is enough. The order of
-// the starts decides the order of the lists, so it does not depend on the number of threads.
+// Rounds of starts are relaxed, tightened and, where new, polished and verified. Where many starts
+// do not agree, rounds of crossings take turns with them (crossing.h); rounds of near hits follow
+// where more than the best is wanted. What is found goes into two lists (extremal_list.h,
+// discrete_list.h), and stopping_policy.h says when it is enough. The order of the starts decides
+// the order of the lists, so it does not depend on the number of threads.
 #pragma once
 
 #include <limits>
@@ -35,7 +36,8 @@ class Search {
   [[nodiscard]] std::vector<Extremal> extremals(bool longer = false) const {
     return extremals_.up_to(longer ? std::numeric_limits<double>::infinity() : options_.max_length);
   }
-  // How often each was hit, up to symmetry, and how often each that was given up.
+  // How often starts hit each, up to symmetry, and each that was given up. Zero for those that only
+  // crossings led to.
   [[nodiscard]] std::vector<int> hits() const;
   // Whether they tell how many were missed. Starts of drift find minima, and some find none but
   // one: there the least must have been hit often, and nothing once only.
@@ -75,8 +77,10 @@ class Search {
   // Whether momenta take turns with starts of drift: while these found nothing.
   [[nodiscard]] bool turn_of_momenta() const;
   void relax_round(int count);
-  // The grid of the next round.
-  [[nodiscard]] int intervals_of_round() const;
+  // The same from crossings of what is known (crossing.h). False where too little is known.
+  [[nodiscard]] bool cross_round(int count);
+  // The grid of the next round of starts, or of crossings, of which `drawn` were tried before.
+  [[nodiscard]] int intervals_of_round(int drawn) const;
   // The same where the scene has no transcription of its own.
   void drift_round(int count);
   // The same from momenta, where forces keep the path on a manifold.
@@ -114,12 +118,13 @@ class Search {
     int good = 0;
     int failed = 0;  // mostly artefacts of a coarse grid
   };
-  // Polishes what is new among paths that were tightened, and adds it to the list.
-  Polished absorb(const std::vector<RelaxedStart>& starts);
+  // Polishes what is new among paths that were tightened, and adds it to the list. Each that was
+  // found counts as `each`.
+  Polished absorb(const std::vector<RelaxedStart>& starts, const Hits& each = kOneStart);
   // Adds the path to the discrete extremals where it is new. Else counts it as a hit.
-  void note(const Path& path, std::vector<std::size_t>& fresh);
+  void note(const Path& path, const Hits& found, std::vector<std::size_t>& fresh);
   // Counts hits of a discrete extremal that is known.
-  void hit(DiscreteExtremal& known, int times);
+  void hit(DiscreteExtremal& known, const Hits& hits);
   // New discrete extremals on finer grids, by their indices; without those that become known ones.
   using Refinements = std::vector<std::pair<std::size_t, Refinement>>;
   Refinements refine_all(const std::vector<std::size_t>& indices, Polished& tally);

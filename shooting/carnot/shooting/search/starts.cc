@@ -19,11 +19,12 @@ namespace {
 // random targets of falling-cat the least known action was missed 19 times with three modes in all
 // starts; 10, 9 and 12 times with 6, 8 and 10 modes in every second one, in the same time; and 11
 // times with 8 in all of them. On nine other scenes, 1,500 targets, nothing more is missed by it.
-// The first starts are simple: easy problems need no others.
+// The first starts are simple: easy problems need no others. Of 1,200 answers for random targets of
+// falling-cat, with crossings, 32, 26 and 31 are missed where the first 16, 8 and 2 are simple.
 int modes_of(int i) {
   constexpr int kFew = 3;
   constexpr int kMany = 8;
-  constexpr int kSimple = 16;  // the least number of starts where they do not agree
+  constexpr int kSimple = 8;
   return i < kSimple || i % 2 == 0 ? kFew : kMany;
 }
 

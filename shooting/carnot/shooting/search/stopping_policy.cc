@@ -40,6 +40,16 @@ constexpr int kMaxStarts = 480;
 // many get that far, and a start takes long there: a vehicle to (0, 1e-10, 0, 0) takes 5 s with
 // 480.
 constexpr int kMaxNear = 240;
+// Starts of the sequence before what they led to is crossed; then rounds of starts and of crossings
+// take turns. What is said of crossings was measured on 440 targets that are hard, with two seeds
+// each: 200 of falling-cat, and with positions up to 15 100 of vehicle, 100 of trailer1 and 40 of
+// trailer2. Of these 880 answers 59 were not the least that is known without crossings, and 9 were
+// none. With them 30 and 7, in 1.52 of the time; with 960 starts and no crossings 53 and 5,
+// in 1.76. Seven rounds of crossings for one of starts, where hits of both end a search alike, miss
+// 57 in the time without crossings.
+constexpr int kMinCrossed = 64;
+// With crossings the limit is so many times as high.
+constexpr int kWithCrossings = 2;
 // So many times the limit of starts do not count where they are blocked: at most three times the
 // limit are drawn. Of 60 random targets of bicycle 44, 50 and 51 are reached with 0, 2 and 4, in
 // 0.40, 1 and 1.41 of the time.
@@ -55,6 +65,8 @@ constexpr int kEnoughHits = 3;
 // targets of falling-cat and one of vehicle are missed, in 0.83 of the time; without, one less of
 // falling-cat, in 1.41.
 constexpr int kSureHits = 20;
+// The same with hits by crossings. Without it the same is missed, in 1.04 of the time.
+constexpr int kSureWithCrossings = 60;
 // So many starts that lead to extremals which double precision cannot verify, and none to another,
 // say that there is no other. In no search of the tests one was found after the first of these.
 constexpr int kSurelyRough = 20;
@@ -98,7 +110,8 @@ void StoppingPolicy::plan_for(int scaled, int actuated) {
 
 int StoppingPolicy::left(const SearchTally& tally) const {
   const int in_vain = given_ ? 0 : std::min(tally.blocked, kMaxBlocked * limit_);
-  return limit_ + in_vain - tally.drawn;
+  const int limit = tally.crossed > 0 && !given_ ? kWithCrossings * limit_ : limit_;
+  return limit + in_vain - tally.drawn - tally.crossed;
 }
 
 int StoppingPolicy::round(const SearchTally& tally) const {
@@ -107,8 +120,13 @@ int StoppingPolicy::round(const SearchTally& tally) const {
 }
 
 double StoppingPolicy::share(const SearchTally& tally) const {
-  const double share = static_cast<double>(tally.drawn) / (tally.drawn + left(tally));
+  const int drawn = tally.drawn + tally.crossed;
+  const double share = static_cast<double>(drawn) / (drawn + left(tally));
   return sweeps_ > 0 ? 0.5 * share : share;
+}
+
+bool StoppingPolicy::turn_of_crossings(const SearchTally& tally) const {
+  return !wants_more_ && !near_ && tally.crossed < tally.drawn - kMinCrossed;
 }
 
 bool StoppingPolicy::are_in_vain(const SearchTally& tally) const {
@@ -122,12 +140,13 @@ bool StoppingPolicy::may_end(const SearchTally& tally) const {
 }
 
 bool StoppingPolicy::ends(const SearchTally& tally, const Competition& competition) const {
-  const bool clear = competition.rivals <= 1 && competition.hits >= kMostHits * tally.starts;
+  const bool clear = competition.rivals <= 1 && competition.hits.starts >= kMostHits * tally.starts;
   if (tally.starts < first_ + kMinStarts && !clear) return false;
-  const bool complete =
-      by_drift_ || competition.missed < kMostMissed || competition.hits >= kSureHits;
-  return complete && competition.hits >= enough_hits_ &&
-         tally.converged >= kConvergedPerRival * competition.rivals;
+  const Hits& hits = competition.hits;
+  const bool sure = hits.starts >= kSureHits || hits.all() >= kSureWithCrossings;
+  const bool complete = by_drift_ || competition.missed < kMostMissed || sure;
+  return complete && hits.starts >= enough_hits_ &&
+         tally.converged - tally.crossings_converged >= kConvergedPerRival * competition.rivals;
 }
 
 }  // namespace carnot::internal

@@ -19,6 +19,8 @@ struct SearchTally {
   int blocked = 0;    // that ran into a singularity of the coordinates
   int converged = 0;  // that led to an extremal, or to one that was given up
   int rough = 0;      // of them, that led to what round-off keeps from its end
+  int crossed = 0;    // crossings that were tried (crossing.h); they are among the starts
+  int crossings_converged = 0;
 };
 
 class StoppingPolicy {
@@ -41,6 +43,8 @@ class StoppingPolicy {
   [[nodiscard]] int left(const SearchTally& tally) const;
   // How many to draw in the next round: fewer where the search may end after it.
   [[nodiscard]] int round(const SearchTally& tally) const;
+  // Whether the next round is one of crossings.
+  [[nodiscard]] bool turn_of_crossings(const SearchTally& tally) const;
   // The fraction done, before the sweeps.
   [[nodiscard]] double share(const SearchTally& tally) const;
 
