@@ -81,6 +81,37 @@ TEST(MultipleShooting, GivesUpWhereThereIsNothingNear) {
 }
 
 // Every way joins the knots of an extremal that is known to a few digits.
+// The first tangents of a flow are computed, all others fail.
+struct FirstTangents {
+  static inline decltype(FlowCalls::tangent_flow) call = nullptr;
+  static inline int left = 0;
+
+  template <class... A>
+  static FlowReport flow(A... arguments) {
+    FlowReport report = call(arguments...);
+    if (left-- <= 0) report.status = FlowStatus::kStepFailed;
+    return report;
+  }
+};
+
+// Ceres would print an error there.
+TEST(MultipleShooting, SaysNothingWhereDerivativesFailOnTheWay) {
+  BoundaryValueProblem problem = test::vehicle({0, 0, 0, 0}, {2, 1, 0.5, 0.5});
+  FirstTangents::call = problem.dynamics.kernel.calls.tangent_flow;
+  problem.dynamics.kernel.calls.tangent_flow = FirstTangents::flow;
+  for (const int computed : {0, 2, 3, 5}) {
+    SCOPED_TRACE(computed);
+    Knots knots = knots_of(problem, kRoughP0, 2, 32);
+    FirstTangents::left = computed;
+    ShootingOptions options;
+    options.minimiser = "ceres";
+    testing::internal::CaptureStderr();
+    const Shooting result = shoot(problem, options, knots);
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+    EXPECT_FALSE(result.converged);
+  }
+}
+
 TEST(Shooting, EveryMinimiserArrives) {
   const BoundaryValueProblem problem = test::vehicle({0, 0, 0, 0}, {2, 1, 0.5, 0.5});
   for (const std::string& name : names_of_minimisers()) {

@@ -19,8 +19,7 @@ struct Beginning {
   std::vector<double> jacobian;
 };
 
-// Of all segments; none where a flow or its tangent fails. Ceres logs an error when its first
-// evaluation fails, and a library must not print.
+// Of all segments; none where a flow or its tangent fails.
 std::vector<Beginning> begin(const ShootingEquations& equations, const Knots& knots) {
   const int n = knots.dof;
   std::vector<Beginning> all;
@@ -39,10 +38,14 @@ std::vector<Beginning> begin(const ShootingEquations& equations, const Knots& kn
 }
 
 // Parameter blocks: q_i, p_i and, but for the last segment, q_{i+1}, p_{i+1}.
+//
+// Ceres prints an error where its first evaluation fails, and where derivatives fail at a place
+// that it has stepped to. A library must not print. So the first evaluation is made before, and
+// derivatives that fail are told by `lost`, with zeros in their place.
 class Jump final : public ceres::CostFunction {
  public:
-  Jump(const ShootingEquations& equations, int i, Beginning beginning)
-      : equations_(equations), i_(i), beginning_(std::move(beginning)) {
+  Jump(const ShootingEquations& equations, int i, Beginning beginning, bool& lost)
+      : equations_(equations), i_(i), beginning_(std::move(beginning)), lost_(lost) {
     const int n = equations.dof();
     const int blocks = i + 1 == equations.segments() ? 2 : 4;
     mutable_parameter_block_sizes()->assign(blocks, n);
@@ -63,7 +66,10 @@ class Jump final : public ceres::CostFunction {
                                     z.data() + 2 * n,
                                     residuals,
                                     jacobians != nullptr ? jacobian.data() : nullptr)) {
-      return false;
+      if (jacobians == nullptr) return false;
+      lost_ = true;
+      std::fill_n(residuals, num_residuals(), 0.0);
+      std::fill(jacobian.begin(), jacobian.end(), 0.0);
     }
     for (int b = 0; jacobians != nullptr && b < blocks; ++b) {
       if (jacobians[b] == nullptr) continue;
@@ -82,14 +88,17 @@ class Jump final : public ceres::CostFunction {
   const ShootingEquations& equations_;
   int i_;
   Beginning beginning_;
+  bool& lost_;
 };
 
-// Stops when the jumps are below the tolerance, or when they are far from that and hardly fall.
+// Stops when the jumps are below the tolerance, when they are far from that and hardly fall, or
+// when there are no derivatives to go on with.
 class StopWhenJoined final : public ceres::IterationCallback {
  public:
-  explicit StopWhenJoined(const ShootingOptions& options)
-      : cost_(0.5 * options.tolerance * options.tolerance), near_(options.near) {}
+  StopWhenJoined(const ShootingOptions& options, const bool& lost)
+      : cost_(0.5 * options.tolerance * options.tolerance), near_(options.near), lost_(lost) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    if (lost_) return ceres::SOLVER_ABORT;
     if (summary.iteration == 0) first_ = summary.cost;
     if (summary.cost <= cost_) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
     const bool hardly_falls = near_ && summary.cost > kHardlySmaller * kHardlySmaller * first_;
@@ -100,6 +109,7 @@ class StopWhenJoined final : public ceres::IterationCallback {
  private:
   double cost_;
   bool near_;
+  const bool& lost_;
   double first_ = 0;
 };
 
@@ -157,10 +167,11 @@ Shooting shoot_with_ceres(const BoundaryValueProblem& problem,
     result.growth = std::max(result.growth, equations.growth(i, jacobian.data()));
   }
   if (result.growth > options.max_growth) return result;
+  bool lost = false;
   ceres::Problem joined;
   for (int i = 0; i < knots.segments; ++i) {
     double* z = knots.at(i);
-    auto* jump = new Jump(equations, i, std::move(beginnings[static_cast<std::size_t>(i)]));
+    auto* jump = new Jump(equations, i, std::move(beginnings[static_cast<std::size_t>(i)]), lost);
     if (i + 1 == knots.segments) {
       joined.AddResidualBlock(jump, nullptr, z, z + n);
     } else {
@@ -168,7 +179,7 @@ Shooting shoot_with_ceres(const BoundaryValueProblem& problem,
     }
   }
   hold_start(problem, knots, joined);
-  StopWhenJoined stop(options);
+  StopWhenJoined stop(options, lost);
   ceres::Solver::Options solver = solver_options(problem, options);
   solver.callbacks.push_back(&stop);
   ceres::Solver::Summary summary;
@@ -176,7 +187,7 @@ Shooting shoot_with_ceres(const BoundaryValueProblem& problem,
 
   result.iterations = static_cast<int>(summary.iterations.size());
   result.residual = std::sqrt(2 * summary.final_cost);
-  result.converged = summary.IsSolutionUsable() && result.residual <= options.tolerance;
+  result.converged = !lost && summary.IsSolutionUsable() && result.residual <= options.tolerance;
   result.converged = equations.complete(knots) && result.converged;
   return result;
 }
