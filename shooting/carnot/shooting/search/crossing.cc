@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <utility>
 
 namespace carnot::internal {
 namespace {
@@ -20,9 +19,13 @@ double value(const Path& path, double s, int j) {
 }  // namespace
 
 Path crossing(const std::vector<const Path*>& parents, std::uint64_t seed, int i, int intervals) {
-  constexpr std::uint64_t kCrossing = 2;  // apart from the numbers of starts
+  // Measured on 400 targets of falling-cat with two seeds and up to 480 starts, where 35 answers
+  // were not the least that is known: 38 with kEarliest = 0.05, 32 with kWidth = 0.02, 31 where
+  // every second crossing has its middle from the other parent, and 40 where all parents are drawn
+  // alike. These differences are hardly more than chance.
   constexpr double kEarliest = 0.2;       // of the time; what is shorter is nearly the other parent
   constexpr double kWidth = 0.05;         // of the time that passes from one parent to the other
+  constexpr std::uint64_t kCrossing = 2;  // apart from the numbers of starts
   std::seed_seq sequence{seed, seed >> 32U, static_cast<std::uint64_t>(i), kCrossing};
   std::mt19937_64 random(sequence);
   std::uniform_real_distribution<double> uniform(0, 1);
