@@ -90,7 +90,9 @@ TEST(CutValues, OfAMeshLeaveOutWhatHasNoNeighbours) {
     const CutTime cut = cut_time(dynamics, kOrigin, momenta[i], search);
     const double expected = cut.cut_time.value_or(std::numeric_limits<double>::infinity());
     EXPECT_TRUE((*values)[i].known);
-    if ((*values)[i].t != expected) EXPECT_NEAR((*values)[i].t, expected, kSame * expected);
+    if ((*values)[i].t != expected) {
+      EXPECT_NEAR((*values)[i].t, expected, kSame * expected);
+    }
   }
 }
 

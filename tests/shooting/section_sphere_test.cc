@@ -112,7 +112,9 @@ TEST(SectionSphere, HasCutTimesWhereTheyAreAskedFor) {
     if (k % (mesh.vertices.size() / kSearched) != 0) continue;
     const CutTime cut = cut_time(vehicle(), kOrigin, vertex.p0, search);
     const double expected = cut.cut_time.value_or(std::numeric_limits<double>::infinity());
-    if (vertex.cut_time != expected) EXPECT_NEAR(vertex.cut_time, expected, 1e-8) << k;
+    if (vertex.cut_time != expected) {
+      EXPECT_NEAR(vertex.cut_time, expected, 1e-8) << k;
+    }
   }
 }
 

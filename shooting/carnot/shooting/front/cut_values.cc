@@ -329,7 +329,10 @@ std::optional<std::vector<CutValue>> CutValues::of_mesh(
   std::vector<int> all(used.size());
   std::iota(all.begin(), all.end(), 0);
   if (!add(used, beside, all, checked)) return std::nullopt;
-  std::vector<CutValue> values(momenta.size(), {false, std::nan(""), std::nan("")});
+  CutValue none;
+  none.t = std::nan("");
+  none.conjugate = std::nan("");
+  std::vector<CutValue> values(momenta.size(), none);
   for (std::size_t i = 0; i < momenta.size(); ++i) {
     if (number[i] >= 0) values[i] = values_[number[i]];
   }

@@ -170,6 +170,7 @@ std::vector<const Path*> DiscreteList::least(int count) const {
   });
   if (known.size() > static_cast<std::size_t>(count)) known.resize(count);
   std::vector<const Path*> paths;
+  paths.reserve(known.size());
   for (const DiscreteExtremal* extremal : known) paths.push_back(&extremal->path);
   return paths;
 }
