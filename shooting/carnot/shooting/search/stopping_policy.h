@@ -14,13 +14,13 @@ namespace carnot::internal {
 
 // What a search has done so far.
 struct SearchTally {
-  int starts = 0;     // that were tried, near hits and ways down among them
-  int drawn = 0;      // of the sequence of starts
-  int blocked = 0;    // that ran into a singularity of the coordinates
-  int converged = 0;  // that led to an extremal, or to one that was given up
-  int rough = 0;      // of them, that led to what round-off keeps from its end
-  int crossed = 0;    // crossings that were tried (crossing.h); they are among the starts
-  int crossings_converged = 0;
+  int starts = 0;               // that were tried, near hits and ways down among them
+  int drawn = 0;                // of the sequence of starts
+  int blocked = 0;              // that ran into a singularity of the coordinates
+  int converged = 0;            // that led to an extremal, or to one that was given up
+  int rough = 0;                // of them, that led to what round-off keeps from its end
+  int crossed = 0;              // crossings that were tried (crossing.h); they are among the starts
+  int crossings_converged = 0;  // of those that converged
 };
 
 class StoppingPolicy {

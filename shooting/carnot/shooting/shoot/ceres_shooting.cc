@@ -66,9 +66,10 @@ class Jump final : public ceres::CostFunction {
                                     z.data() + 2 * n,
                                     residuals,
                                     jacobians != nullptr ? jacobian.data() : nullptr)) {
-      if (jacobians == nullptr) return false;
+      const bool flows = jacobians != nullptr &&
+                         equations_.evaluate(i_, z.data(), z.data() + 2 * n, residuals, nullptr);
+      if (!flows) return false;
       lost_ = true;
-      std::fill_n(residuals, num_residuals(), 0.0);
       std::fill(jacobian.begin(), jacobian.end(), 0.0);
     }
     for (int b = 0; jacobians != nullptr && b < blocks; ++b) {
@@ -98,9 +99,9 @@ class StopWhenJoined final : public ceres::IterationCallback {
   StopWhenJoined(const ShootingOptions& options, const bool& lost)
       : cost_(0.5 * options.tolerance * options.tolerance), near_(options.near), lost_(lost) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
-    if (lost_) return ceres::SOLVER_ABORT;
     if (summary.iteration == 0) first_ = summary.cost;
     if (summary.cost <= cost_) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+    if (lost_) return ceres::SOLVER_ABORT;
     const bool hardly_falls = near_ && summary.cost > kHardlySmaller * kHardlySmaller * first_;
     return summary.iteration == kTrials && hardly_falls ? ceres::SOLVER_ABORT
                                                         : ceres::SOLVER_CONTINUE;
@@ -187,7 +188,7 @@ Shooting shoot_with_ceres(const BoundaryValueProblem& problem,
 
   result.iterations = static_cast<int>(summary.iterations.size());
   result.residual = std::sqrt(2 * summary.final_cost);
-  result.converged = !lost && summary.IsSolutionUsable() && result.residual <= options.tolerance;
+  result.converged = summary.IsSolutionUsable() && result.residual <= options.tolerance;
   result.converged = equations.complete(knots) && result.converged;
   return result;
 }
