@@ -68,7 +68,7 @@ BoundarySolver from_paths(const std::string& minimiser) {
     std::optional<Extremal> extremal;
     (void)relax(problem, start.relaxation, start.path);
     if (tighten(problem, {}, start.path).converged) {
-      extremal = polish(problem, options, start.path).extremal;
+      extremal = polish(internal::MassLadder(problem), options, start.path).extremal;
     }
     return trial_of(extremal, began);
   };

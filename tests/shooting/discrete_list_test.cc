@@ -45,7 +45,8 @@ std::vector<int> starts_of(const std::vector<Hits>& hits) {
 
 struct DiscreteListTest : testing::Test {
   BoundaryValueProblem problem = test::heisenberg_group({1, 0, 0});
-  DiscreteList list{problem};
+  MassLadder ladder{problem};
+  DiscreteList list{ladder};
   ExtremalList extremals;
 };
 

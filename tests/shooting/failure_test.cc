@@ -85,7 +85,7 @@ TEST(Failure, NotRefined) {
   const BoundaryValueProblem problem = test::sideways();
   Path path = straight_path(problem, 8);
   path.q[path.dof + 1] = std::nan("");
-  const Outcome outcome = polish(problem, {}, path);
+  const Outcome outcome = polish(MassLadder(problem), {}, path);
   EXPECT_FALSE(outcome.extremal);
   EXPECT_EQ(outcome.reason, Reason::kNotRefined);
 }
@@ -94,7 +94,7 @@ TEST(Failure, NotRefined) {
 TEST(Failure, FlowFailed) {
   const BoundaryValueProblem problem(
       make_dynamics(test::OneByOne<test::FadingMass>{}), {1, 0, 0}, {-1, 0, 0});
-  const Outcome outcome = polish(problem, {}, straight_path(problem, 32));
+  const Outcome outcome = polish(MassLadder(problem), {}, straight_path(problem, 32));
   EXPECT_FALSE(outcome.extremal);
   EXPECT_EQ(outcome.reason, Reason::kFlowFailed);
 }

@@ -78,6 +78,10 @@ BoundaryValueProblem stiff_vehicle(std::vector<double> to) {
   return {dynamics("vehicle", stiff), {0, 0, 0, 0}, std::move(to)};
 }
 
+BoundaryValueProblem light_steering(std::vector<double> to, double beta) {
+  return {dynamics("vehicle", {{"beta", beta}}), {0, 0, 0, 0}, std::move(to)};
+}
+
 BoundaryValueProblem vehicle_cosine(std::vector<double> from, std::vector<double> to, double time) {
   return {dynamics("vehicle-cosine"), std::move(from), std::move(to), time};
 }

@@ -16,6 +16,9 @@ BoundaryValueProblem long_vehicle(std::vector<double> from, std::vector<double> 
 // alpha = .1, beta = .02, length = 2.5, from the origin.
 BoundaryValueProblem stiff_vehicle(std::vector<double> to);
 
+// alpha = length = 1, from the origin.
+BoundaryValueProblem light_steering(std::vector<double> to, double beta);
+
 BoundaryValueProblem vehicle_cosine(std::vector<double> from, std::vector<double> to, double time);
 BoundaryValueProblem heisenberg_group(std::vector<double> to, double time = 1);  // from the origin
 BoundaryValueProblem martinet(std::vector<double> to);                           // the same

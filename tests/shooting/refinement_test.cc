@@ -44,7 +44,7 @@ TEST(Refinement, ChangesFallByFour) {
     RefinementOptions options;
     options.enough = 0;
     options.max_intervals = intervals;
-    const Refinement refined = refine(problem, options, coarse);
+    const Refinement refined = refine(MassLadder(problem), options, coarse);
     ASSERT_TRUE(refined.found);
     EXPECT_EQ(refined.intervals, intervals);
     EXPECT_EQ(refined.path.intervals, intervals / 2);
@@ -65,7 +65,7 @@ TEST(Refinement, ExtrapolatedPathsConvergeWithTheFourthOrder) {
     RefinementOptions options;
     options.enough = 0;
     options.max_intervals = intervals;
-    paths.push_back(refine(problem, options, coarse).path);
+    paths.push_back(refine(MassLadder(problem), options, coarse).path);
     ASSERT_EQ(paths.back().intervals, intervals / 2);
   }
   const auto change = [&](std::vector<double> Path::*numbers, int finer) {
@@ -89,7 +89,7 @@ TEST(Refinement, ExtrapolationIsOfFourthOrder) {
   const BoundaryValueProblem problem = test::straight_ahead();
   RefinementOptions options;
   options.enough = 1e-2;
-  const Refinement refined = refine(problem, options, tight(problem));
+  const Refinement refined = refine(MassLadder(problem), options, tight(problem));
   ASSERT_TRUE(refined.settled);
   EXPECT_NEAR(refined.path.momentum(0)[0], 1, 1e-9);
 }

@@ -114,7 +114,7 @@ Knots partner(const SceneInfo& info, const ProblemSymmetry& symmetry, const Knot
 }
 
 Path partner(const SceneInfo& info, const ProblemSymmetry& symmetry, const Path& path) {
-  Path image{path.intervals, path.dof, std::vector<double>(path.q.size()), {}, {}};
+  Path image{path.intervals, path.dof, std::vector<double>(path.q.size()), {}, {}, path.rung};
   for (int i = 0; i <= path.intervals; ++i) {
     const int source = symmetry.reverses ? path.intervals - i : i;
     const std::vector<double> q = linear(info.symmetries, symmetry, path.configuration(source));

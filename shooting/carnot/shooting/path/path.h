@@ -14,6 +14,7 @@ struct Path {
   std::vector<double> q;       // (intervals + 1) x n
   std::vector<double> lambda;  // intervals x k, of the midpoint rule
   std::vector<double> p;       // (intervals + 1) x n, discrete momenta; filled by a relaxation
+  int rung = 0;                // of the ladder of masses (mass_ladder.h) that it is a path of
 
   [[nodiscard]] const double* configuration(int i) const { return q.data() + i * dof; }
   [[nodiscard]] double* configuration(int i) { return q.data() + i * dof; }

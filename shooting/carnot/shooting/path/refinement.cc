@@ -54,16 +54,40 @@ bool carried(const BoundaryValueProblem& problem, Path& path) {
   return follow({}, correct, path);
 }
 
-// The discrete extremal near `coarse` with twice as many intervals: by Newton's method or, where
-// the coarse one is too far away for it, by relaxing once more.
-std::optional<Path> finer(const BoundaryValueProblem& problem, const Path& coarse) {
+// Takes the path of a coarser grid down from a rung: first there, on its own grid, then while the
+// masses fall. Of 40 random targets of a vehicle with light steering (beta from 1e-4 to 0.1) to
+// which all starts began at the top of the ladder, eight were not solved without this, and one with
+// it.
+bool lightened(const MassLadder& ladder, int rung, Path& path) {
+  DiscreteNewtonOptions newton;
+  newton.max_iterations = 40;
+  if (!tighten(ladder.on(rung), newton, path).converged) return false;
+  newton.max_iterations = 10;
+  newton.most_damped = 2;
+  HomotopyOptions homotopy;
+  homotopy.first_step = 0.25;
+  homotopy.most_steps = 40;
+  const auto correct = [&](double s, Path& trial) {
+    return tighten(ladder.below(rung, s), newton, trial).converged;
+  };
+  return follow(homotopy, correct, path);
+}
+
+// The discrete extremal near `coarse` with twice as many intervals, one rung down: by Newton's
+// method or, where the coarse one is too far away for it, by relaxing once more.
+std::optional<Path> finer(const MassLadder& ladder, const Path& coarse) {
   constexpr int kMostRelaxed = 128;
+  const BoundaryValueProblem& problem = ladder.on(std::max(0, coarse.rung - 1));
   DiscreteNewtonOptions newton;
   newton.max_iterations = 40;
   const bool walled = in_one_chart(problem.dynamics, coarse);
   Path path = halved(coarse);
   if (walled && !in_one_chart(problem.dynamics, path)) return std::nullopt;
   if (tighten(problem, newton, path).converged) return path;
+  if (coarse.rung > 0) {
+    path = halved(coarse);
+    if (lightened(ladder, coarse.rung, path)) return path;
+  }
   if (!problem.dynamics.has_transcription()) {
     path = halved(coarse);
     return carried(problem, path) ? std::optional(path) : std::nullopt;
@@ -86,6 +110,7 @@ Path halved(const Path& path) {
   Path fine;
   fine.intervals = 2 * last;
   fine.dof = n;
+  fine.rung = std::max(0, path.rung - 1);
   fine.q.resize(static_cast<std::size_t>(fine.intervals + 1) * n);
   fine.lambda.resize(static_cast<std::size_t>(fine.intervals) * k);
   for (int i = 0; i <= last; ++i) {
@@ -115,9 +140,7 @@ Path halved(const Path& path) {
   return fine;
 }
 
-Refinement refine(const BoundaryValueProblem& problem,
-                  const RefinementOptions& options,
-                  const Path& path) {
+Refinement refine(const MassLadder& ladder, const RefinementOptions& options, const Path& path) {
   Refinement result;
   // Each doubling changes the momenta by a quarter of the last change where the grid resolves the
   // path. Where the changes hardly fall, finer grids follow a path that is not there.
@@ -126,8 +149,12 @@ Refinement refine(const BoundaryValueProblem& problem,
   for (;;) {
     const Path& coarse = result.finer.empty() ? path : result.finer.back();
     if (2 * coarse.intervals > options.max_intervals) break;
-    std::optional<Path> fine = finer(problem, coarse);
+    std::optional<Path> fine = finer(ladder, coarse);
     if (!fine) break;
+    if (coarse.rung > 0) {
+      result.finer.push_back(std::move(*fine));
+      continue;
+    }
     result.found = true;
     result.change = change_of(coarse, *fine);
     result.intervals = fine->intervals;

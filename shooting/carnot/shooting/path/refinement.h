@@ -7,6 +7,9 @@
 // need many intervals; most problems do not. A coarse extremal that has no fine counterpart is an
 // artefact of the grid and ends here.
 //
+// A path of a heavier problem goes down its ladder on the way (mass_ladder.h). What its grids
+// differ by says something once both are of the problem itself.
+//
 // On a long way with drift a coarse grid is late by a part of a revolution. Where Newton's method
 // does not find the fine counterpart at once, it follows it while what its equations leave at the
 // start is taken back (homotopy.h).
@@ -14,8 +17,8 @@
 
 #include <vector>
 
-#include "carnot/shooting/boundary_value_problem.h"
 #include "carnot/shooting/path/path.h"
+#include "carnot/shooting/problem/mass_ladder.h"
 
 namespace carnot::internal {
 
@@ -25,7 +28,7 @@ struct RefinementOptions {
 };
 
 struct Refinement {
-  bool found = false;       // there is an extremal on a finer grid,
+  bool found = false;       // there is an extremal of the problem itself on a finer grid,
   bool settled = false;     // and it changes by little
   double change = 1;        // of the momenta in the last doubling, relative
   Path path;                // on the last but one grid, extrapolated
@@ -33,11 +36,11 @@ struct Refinement {
   std::vector<Path> finer;  // the discrete extremals on the finer grids
 };
 
-Refinement refine(const BoundaryValueProblem& problem,
-                  const RefinementOptions& options,
-                  const Path& path);
+// Of `path`, a discrete extremal of the problem on its rung.
+Refinement refine(const MassLadder& ladder, const RefinementOptions& options, const Path& path);
 
-// The path on a grid of half the step, by cubic interpolation; multipliers linearly.
+// The path on a grid of half the step and one rung down, by cubic interpolation; multipliers
+// linearly.
 Path halved(const Path& path);
 
 }  // namespace carnot::internal

@@ -23,21 +23,28 @@ bool same_nodes(const Path& a, const Path& b) {
   return apart <= kSame * extent;
 }
 
+// Lowers what is known of the least action on the rung of this one.
+void lower(std::map<int, double>& least, const DiscreteExtremal& extremal) {
+  const auto [of_rung, first] = least.try_emplace(extremal.path.rung, extremal.action);
+  if (!first) of_rung->second = std::min(of_rung->second, extremal.action);
+}
+
 }  // namespace
 
 double DiscreteList::action_of(const Path& path) const {
-  return discrete_action(problem_.dynamics, problem_.time / path.intervals, path);
+  const BoundaryValueProblem& problem = ladder_.on(path.rung);
+  return discrete_action(problem.dynamics, problem.time / path.intervals, path);
 }
 
 std::size_t DiscreteList::find(const Path& path, const ExtremalList& extremals) const {
   constexpr double kSame = 1e-6;  // relative
   std::vector<Path> images{path};
   for (const ProblemSymmetry& symmetry : symmetries_) {
-    images.push_back(partner(problem_.dynamics.info, symmetry, path));
+    images.push_back(partner(ladder_.on(0).dynamics.info, symmetry, path));
   }
   const double action = action_of(path);
   const auto is_this = [&](const DiscreteExtremal& known, const Path& form, double of_form) {
-    if (form.intervals != path.intervals) return false;
+    if (form.intervals != path.intervals || form.rung != path.rung) return false;
     if (std::abs(action - of_form) > kSame * std::abs(action)) return false;
     if (known.fate == Fate::kExtremal && extremals[known.extremal].singular) return true;
     return std::any_of(
@@ -83,7 +90,10 @@ std::size_t DiscreteList::refine(std::size_t index,
   known.others.insert(known.others.end(), forms.begin(), forms.end());
   if (becomes == index && !forms.empty()) {
     const std::size_t last = forms.size() - 1;
-    const double coarse = last > 0 ? forms[last - 1].action : refined.action;
+    const bool after_one = last == 0;
+    const int rung = after_one ? refined.path.rung : forms[last - 1].path.rung;
+    if (rung > 0) return becomes;  // the actions are of two problems
+    const double coarse = after_one ? refined.action : forms[last - 1].action;
     const double correction = (forms[last].action - coarse) / 3;
     refined.estimate = forms[last].action + correction;
     refined.uncertainty = std::abs(correction);
@@ -93,20 +103,19 @@ std::size_t DiscreteList::refine(std::size_t index,
 
 std::vector<std::size_t> DiscreteList::take_promising(std::vector<std::size_t>& pending) const {
   constexpr double kClearly = 0.2;  // above the least action, relative; grids err by less
-  double least = std::numeric_limits<double>::infinity();
+  // On each rung, of extremals; of the pending ones where there are none.
+  std::map<int, double> least;
+  std::map<int, double> least_pending;
   for (const DiscreteExtremal& known : list_) {
-    if (known.fate == Fate::kExtremal) least = std::min(least, known.action);
+    if (known.fate == Fate::kExtremal) lower(least, known);
   }
-  const bool verified = std::any_of(list_.begin(), list_.end(), [](const DiscreteExtremal& known) {
-    return known.fate == Fate::kExtremal;
-  });
-  for (const std::size_t i : pending) {
-    if (!verified) least = std::min(least, list_[i].action);
-  }
+  for (const std::size_t i : pending) lower(least_pending, list_[i]);
+  least.merge(least_pending);
   std::vector<std::size_t> promising;
   std::vector<std::size_t> rest;
   for (const std::size_t i : pending) {
-    const bool clearly_more = list_[i].action - least > kClearly * std::abs(least);
+    const double of_rung = least.at(list_[i].path.rung);
+    const bool clearly_more = list_[i].action - of_rung > kClearly * std::abs(of_rung);
     (clearly_more ? rest : promising).push_back(i);
   }
   pending = rest;
@@ -136,12 +145,13 @@ Hits DiscreteList::give_up(const std::vector<std::size_t>& pending) {
 }
 
 std::vector<Hits> DiscreteList::hits_given_up() const {
-  std::map<int, std::vector<Hits>> hits;  // by intervals
+  std::map<std::pair<int, int>, std::vector<Hits>> hits;  // by intervals and rungs
   for (const DiscreteExtremal& known : list_) {
-    if (known.fate == Fate::kGivenUp) hits[known.path.intervals].push_back(known.hits);
+    if (known.fate != Fate::kGivenUp) continue;
+    hits[{known.path.intervals, known.path.rung}].push_back(known.hits);
   }
   std::vector<Hits> most;
-  for (auto& [intervals, of_grid] : hits) {
+  for (auto& [grid, of_grid] : hits) {
     const auto total = [](const std::vector<Hits>& x) {
       return std::accumulate(
           x.begin(), x.end(), 0, [](int sum, const Hits& one) { return sum + one.starts; });

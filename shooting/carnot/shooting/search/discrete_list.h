@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "carnot/shooting/extremal/symmetry.h"
+#include "carnot/shooting/problem/mass_ladder.h"
 #include "carnot/shooting/search/extremal_list.h"
 
 namespace carnot::internal {
@@ -49,9 +50,9 @@ struct DiscreteExtremal {
 
 class DiscreteList {
  public:
-  // Keeps a reference to the problem.
-  explicit DiscreteList(const BoundaryValueProblem& problem)
-      : problem_(problem), symmetries_(symmetries_of(problem)) {}
+  // Keeps a reference to the ladder.
+  explicit DiscreteList(const MassLadder& ladder)
+      : ladder_(ladder), symmetries_(symmetries_of(ladder.on(0))) {}
 
   [[nodiscard]] std::size_t size() const { return list_.size(); }
   [[nodiscard]] DiscreteExtremal& operator[](std::size_t index) { return list_[index]; }
@@ -92,7 +93,7 @@ class DiscreteList {
  private:
   [[nodiscard]] double action_of(const Path& path) const;
 
-  const BoundaryValueProblem& problem_;
+  const MassLadder& ladder_;
   std::vector<ProblemSymmetry> symmetries_;
   std::vector<DiscreteExtremal> list_;
 };

@@ -21,9 +21,12 @@ void come_to(Reason& furthest, Reason reason) { furthest = std::max(furthest, re
 
 RefinementOptions refinement_of(const Path& path) {
   constexpr int kDoublings = 8;  // of long ways, at least
+  constexpr int kFeet = 4;       // times the first grid at the foot of the ladder, at least
   RefinementOptions refinement;
   refinement.enough = 4e-2;
   refinement.max_intervals = std::max(refinement.max_intervals, kDoublings * path.intervals);
+  refinement.max_intervals =
+      std::max(refinement.max_intervals, kFeet * path.intervals << path.rung);
   return refinement;
 }
 
@@ -93,29 +96,28 @@ Outcome shoot_from(const BoundaryValueProblem& problem,
   return verify(problem, knots_of(problem, x, 1, kFewSteps), 2 * kFewSteps, options.tolerance);
 }
 
-Refinement refine_to_polish(const BoundaryValueProblem& problem, const Path& path) {
-  return refine(problem, refinement_of(path), path);
+Refinement refine_to_polish(const MassLadder& ladder, const Path& path) {
+  return refine(ladder, refinement_of(path), path);
 }
 
-Outcome polish(const BoundaryValueProblem& problem,
-               const GeodesicOptions& options,
-               const Path& path) {
-  return polish(problem, options, path, refine_to_polish(problem, path));
+Outcome polish(const MassLadder& ladder, const GeodesicOptions& options, const Path& path) {
+  return polish(ladder, options, path, refine_to_polish(ladder, path));
 }
 
-Outcome polish(const BoundaryValueProblem& problem,
+Outcome polish(const MassLadder& ladder,
                const GeodesicOptions& options,
                const Path& path,
                const Refinement& refined) {
   // From a grid that is fine enough Newton's method takes two or three iterations. Where it takes
   // more a finer grid, which is cheaper than the flow, comes first.
+  const BoundaryValueProblem& problem = ladder.on(0);
   constexpr std::array kPatience{4, 8, 12};
   RefinementOptions refinement = refinement_of(path);
   Outcome outcome{std::nullopt, Reason::kNotRefined};
   Refinement further;
   for (const int patience : kPatience) {
     const bool first = patience == kPatience.front();
-    if (!first) further = refine(problem, refinement, path);
+    if (!first) further = refine(ladder, refinement, path);
     const Refinement& grid = first ? refined : further;
     if (!grid.found) break;
     Outcome joined = join(problem, options, grid, patience);

@@ -11,20 +11,18 @@
 namespace carnot::internal {
 
 // The first half of polishing: the path on grids that are fine enough for shooting.
-Refinement refine_to_polish(const BoundaryValueProblem& problem, const Path& path);
+Refinement refine_to_polish(const MassLadder& ladder, const Path& path);
 
 // The second half: joins the knots on the refined path (multiple_shooting.h). There are as many
 // knots, and as many steps, as the tangent flow asks for. Where that fails, refines further, and at
 // last shoots along the path.
-Outcome polish(const BoundaryValueProblem& problem,
+Outcome polish(const MassLadder& ladder,
                const GeodesicOptions& options,
                const Path& path,
                const Refinement& refined);
 
 // Both halves.
-Outcome polish(const BoundaryValueProblem& problem,
-               const GeodesicOptions& options,
-               const Path& path);
+Outcome polish(const MassLadder& ladder, const GeodesicOptions& options, const Path& path);
 
 // The same from knots that may be far from joined.
 Outcome polish(const BoundaryValueProblem& problem,

@@ -43,13 +43,15 @@ RelaxedStart relaxed(const BoundaryValueProblem& problem, const Start& start, in
   return result;
 }
 
-RelaxedStart relaxed_start(const BoundaryValueProblem& problem,
+RelaxedStart relaxed_start(const MassLadder& ladder,
                            const std::optional<NearTarget>& near,
                            const RelaxedStartOptions& options,
                            int i) {
   if (!near) {
-    const Start start = make_start(problem, options.seed, i, options.intervals);
-    return relaxed(problem, start, options.stiffness);
+    const int rung = ladder.rung_of(i, options.intervals);
+    Start start = make_start(ladder.on(rung), options.seed, i, options.intervals);
+    start.path.rung = rung;
+    return relaxed(ladder.on(rung), start, options.stiffness);
   }
   const NearTarget::Way way = near->way(i);
   const BoundaryValueProblem easy = near->easy(way);

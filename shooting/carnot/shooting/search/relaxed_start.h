@@ -7,6 +7,7 @@
 
 #include "carnot/shooting/boundary_value_problem.h"
 #include "carnot/shooting/path/path.h"
+#include "carnot/shooting/problem/mass_ladder.h"
 #include "carnot/shooting/search/near_target.h"
 #include "carnot/shooting/search/starts.h"
 
@@ -29,7 +30,7 @@ struct RelaxedStartOptions {
 
 // Start `i` of the sequence (starts.h). Where there is a near target, the path is relaxed to the
 // easy problem in its stead and then shrunk.
-RelaxedStart relaxed_start(const BoundaryValueProblem& problem,
+RelaxedStart relaxed_start(const MassLadder& ladder,
                            const std::optional<NearTarget>& near,
                            const RelaxedStartOptions& options,
                            int i);

@@ -35,7 +35,8 @@ Search::Search(const BoundaryValueProblem& problem, const GeodesicOptions& optio
       policy_(
           options, problem.dynamics.forced == 0 || problem.dynamics.on_leaves, near_.has_value()),
       extremals_(partners_for(problem, options, policy_)),
-      discrete_(problem),
+      ladder_(problem),
+      discrete_(ladder_),
       seeks_abnormal_(may_have_abnormal_curves(problem)) {
   if (problem.dynamics.has_transcription()) return;
   if (problem.dynamics.forced > 0 && !problem.dynamics.on_leaves) return;
@@ -175,7 +176,7 @@ Search::Refinements Search::refine_all(const std::vector<std::size_t>& indices, 
   std::vector<Refinement> refinements(indices.size());
   parallel_for(static_cast<int>(indices.size()), threads_, [&](int i) {
     if (!deadline_.passed()) {
-      refinements[i] = refine_to_polish(problem_, discrete_[indices[i]].path);
+      refinements[i] = refine_to_polish(ladder_, discrete_[indices[i]].path);
     }
   });
   Refinements refined;
@@ -208,7 +209,7 @@ void Search::polish_all(const Refinements& refined, Polished& tally) {
   parallel_for(static_cast<int>(refined.size()), threads_, [&](int i) {
     const auto& [index, refinement] = refined[i];
     if (deadline_.passed()) return;
-    polished[i] = polish(problem_, options_, discrete_[index].path, refinement);
+    polished[i] = polish(ladder_, options_, discrete_[index].path, refinement);
   });
   for (std::size_t i = 0; i < refined.size(); ++i) {
     DiscreteExtremal& discrete = discrete_[refined[i].first];

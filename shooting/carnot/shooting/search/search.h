@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "carnot/shooting/path/refinement.h"
+#include "carnot/shooting/problem/mass_ladder.h"
 #include "carnot/shooting/search/deadline.h"
 #include "carnot/shooting/search/discrete_list.h"
 #include "carnot/shooting/search/drift_starts.h"
@@ -145,6 +146,7 @@ class Search {
   std::optional<DriftStarts> drift_;  // where the scene has no transcription of its own
   StoppingPolicy policy_;
   ExtremalList extremals_;
+  MassLadder ladder_;
   DiscreteList discrete_;
   SearchTally tally_;
   Reason furthest_ = Reason::kNone;

@@ -83,7 +83,7 @@ void Search::relax_round(int count) {
   std::vector<RelaxedStart> starts(count);
   parallel_for(count, threads_, [&](int i) {
     if (deadline_.passed()) return;
-    starts[i] = relaxed_start(problem_, near_, options, tally_.drawn + i);
+    starts[i] = relaxed_start(ladder_, near_, options, tally_.drawn + i);
   });
   tally_.drawn += count;
   const Polished polished = absorb(starts);
@@ -110,9 +110,11 @@ bool Search::cross_round(int count) {
   std::vector<RelaxedStart> starts(count);
   parallel_for(count, threads_, [&](int i) {
     if (deadline_.passed()) return;
-    Start start = make_start(problem_, options_.seed, first + i, intervals);
+    const int rung = ladder_.rung_of(first + i, intervals);
+    Start start = make_start(ladder_.on(rung), options_.seed, first + i, intervals);
     start.path = crossing(parents, options_.seed, first + i, intervals);
-    starts[i] = relaxed(problem_, start, stiffness_);
+    start.path.rung = rung;
+    starts[i] = relaxed(ladder_.on(rung), start, stiffness_);
   });
   tally_.crossed += count;
   const int before = tally_.converged;
@@ -160,11 +162,11 @@ bool Search::descend_round() {
   Path path = saddle->path;
   for (int i = 0; i < saddle->descents; ++i) {
     path = halved(path);
-    if (!tighten(problem_, {}, path).converged) return false;
+    if (!tighten(ladder_.on(path.rung), {}, path).converged) return false;
   }
   ++saddle->descents;
   std::vector<RelaxedStart> lower;
-  for (Path& way : ways_down(problem_, path)) {
+  for (Path& way : ways_down(ladder_.on(path.rung), path)) {
     lower.emplace_back();
     lower.back().found = true;
     lower.back().path = std::move(way);
