@@ -83,7 +83,8 @@ struct Node {
   double constant = 0;        // of a sum
   std::vector<Part> parts{};  // of a sum or product; the arguments of a function, times factors
   std::uint32_t depth = 0;    // of the formula
-  friend auto operator<=>(const Node&, const Node&) = default;
+  // clang-tidy 14 sees a zero for nullptr in what the compiler makes of this.
+  friend auto operator<=>(const Node&, const Node&) = default;  // NOLINT(modernize-use-nullptr)
 };
 
 class Graph {

@@ -72,13 +72,23 @@ struct AdmissibleVelocities {
     const Controls b = transposed_times(f, lambda);
     const Controls w = square.solve(transposed_times(f, v));
     const Controls w_l = square.solve(b);
-    Controls rw = w;
-    if constexpr (HasControlWeight<Scene>) rw = product(scene.control_weight(q), w);
-    const T energy = dot(w, rw) - constant<T>(weight) * dot(b, w_l);
+    const T energy = square_of_controls(q, w) - constant<T>(weight) * dot(b, w_l);
     return constant<T>(0.5) * energy + dot(b, w) - dot(lambda, v);
   }
 
  private:
+  // w'R w.
+  template <class T>
+  [[nodiscard]] T square_of_controls(const Vector<T, kDof>& q,
+                                     const Vector<T, kControls>& w) const {
+    if constexpr (HasControlWeight<Scene>) {
+      const Vector<T, kControls> rw = product(scene.control_weight(q), w);
+      return dot(w, rw);
+    } else {
+      return dot(w, w);
+    }
+  }
+
   // D^-1 F.
   template <class T>
   [[nodiscard]] Matrix<T, kDof, kControls> frame(const Vector<T, kDof>& q) const {

@@ -286,17 +286,18 @@ bool go_along(double begin, double length, bool enough, long& steps, Count& coun
   }
 }
 
+ConjugatePoint unknown() { return {std::numeric_limits<double>::quiet_NaN(), {}}; }
+
 }  // namespace
 
 ConjugatePoint conjugate_point(const Ray& ray, double horizon, int order) {
   // How many steps are enough is found for stretches that double: most rays are conjugate early.
   constexpr double kFirst = 0.125;
-  const ConjugatePoint unknown{std::numeric_limits<double>::quiet_NaN(), {}};
   const Dynamics& dynamics = ray.dynamics();
   Count count(ray, order);
   const double first = kFirst * horizon;
   const double least = kFirst * steps_of_tangents(dynamics, count.end().z, horizon);
-  if (!(least < kMostSteps)) return unknown;
+  if (!(least < kMostSteps)) return unknown();
   const long fewest = std::max(1L, static_cast<long>(std::ceil(least)));
   // A flow alone tells how many are enough at first. Later on that is known but for surprises.
   long steps = enough_steps(dynamics, count.end().z, first, fewest);
@@ -304,7 +305,7 @@ ConjugatePoint conjugate_point(const Ray& ray, double horizon, int order) {
   double h = first / static_cast<double>(steps);
   for (double end = first; end <= horizon; end *= 2) {
     steps = std::clamp(std::lround((end - begin) / h), 1L, kMostSteps);
-    if (!go_along(begin, end - begin, end == first, steps, count)) return unknown;
+    if (!go_along(begin, end - begin, end == first, steps, count)) return unknown();
     if (count.found) return *count.found;
     h = (end - begin) / static_cast<double>(steps);
     begin = end;
