@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "carnot/load_scene.h"
+#include "carnot/make_dynamics.h"
 #include "shooting/problems.h"
 
 namespace carnot::internal::dilation_test {
@@ -76,7 +78,35 @@ TEST(Dilation, ScalesTheGaugeAndComesBack) {
 }
 
 TEST(Dilation, NothingWhereTheFrameIsSingular) {
-  EXPECT_FALSE(Dilation::at_start(from(test::bicycle({0, 1, 0, 0}), {0, 0, 0, NAN})));
+  const BoundaryValueProblem problem = from(test::bicycle({0, 1, 0, 0}), {0, 0, 0, NAN});
+  EXPECT_FALSE(Dilation::at_start(problem));
+  EXPECT_EQ(bracket_span(problem).dimension, 4) << "nothing is said";
+}
+
+TEST(BracketSpan, IsEverythingWhereTheFlagIsComplete) {
+  for (const BoundaryValueProblem& problem :
+       {test::sideways(), test::martinet({0, 0, 1}), test::engel({0, 0, 0, 1})}) {
+    const BracketSpan span = bracket_span(problem);
+    EXPECT_EQ(span.dimension, problem.dynamics.dof);
+    EXPECT_FALSE(span.annihilator);
+  }
+}
+
+// The distance of (x, y) from the origin is kept, and z is free.
+TEST(BracketSpan, FindsWhatIsKept) {
+  constexpr double kDifferences = 1e-3;
+  const Dynamics circles = make_dynamics(scene_from_text(R"(
+    coordinates x, y, z
+    kinetic = (x'^2 + y'^2 + z'^2) / 2
+    0 = x x' + y y'
+  )"));
+  const BracketSpan span = bracket_span({circles, {0.6, 0.8, 3}, {0.8, 0.6, 2}});
+  EXPECT_EQ(span.dimension, 2);
+  ASSERT_TRUE(span.annihilator);
+  const double sign = (*span.annihilator)[0] > 0 ? 1 : -1;
+  EXPECT_NEAR(sign * (*span.annihilator)[0], 0.6, kDifferences);
+  EXPECT_NEAR(sign * (*span.annihilator)[1], 0.8, kDifferences);
+  EXPECT_NEAR((*span.annihilator)[2], 0, kDifferences);
 }
 
 }  // namespace

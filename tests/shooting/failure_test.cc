@@ -1,12 +1,14 @@
 // Every way for a search to find nothing has its code.
 #include "carnot/shooting/search/failure.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <set>
 #include <string>
 
+#include "carnot/load_scene.h"
 #include "carnot/make_dynamics.h"
 #include "carnot/shooting/find_geodesics.h"
 #include "carnot/shooting/search/polish.h"
@@ -57,6 +59,31 @@ TEST(Failure, NoStartConverged) {
   GeodesicOptions options;
   options.starts = 1;  // the straight line, which collapses
   EXPECT_EQ(reason_of(test::sideways(), options), Reason::kNoStartConverged);
+}
+
+// The turns of both wheels tell the heading of a robot with differential drive, which is
+// c/b (right - left) from the start on.
+TEST(Failure, TellsWhatTheConstraintsKeep) {
+  const Dynamics robot = make_dynamics(scene_from_text(R"(
+    coordinates x, y [length], theta, left, right [angle]
+    parameters b = 0.5 [length] > 0, c = 0.1 [length] > 0
+    kinetic = (x'^2 + y'^2 + 0.05 theta'^2 + 0.01 left'^2 + 0.01 right'^2) / 2
+    0 = x' sin(theta) - y' cos(theta)
+    0 = x' cos(theta) + y' sin(theta) - c (left' + right') / 2
+    0 = b theta' - c (right' - left')
+  )"));
+  GeodesicOptions options;
+  options.starts = 16;
+  const GeodesicReport apart =
+      find_geodesics({robot, {0, 0, 0, 0, 0}, {0.5, 0.2, 0.4, 4, 6.5}}, options);
+  EXPECT_EQ(apart.reason, Reason::kNoStartConverged);
+  EXPECT_THAT(apart.message,
+              testing::AllOf(testing::HasSubstr("span no more than 4 of 5 directions"),
+                             testing::HasSubstr("the derivatives (0, 0, 1, 0.2, -0.2) at")));
+  // Where a search finds nothing for other reasons, nothing is said of that.
+  options.starts = 1;
+  EXPECT_THAT(find_geodesics(test::sideways(), options).message,
+              testing::Not(testing::HasSubstr("directions")));
 }
 
 // Near the steering angle pi/2 the bicycle turns on the spot for nothing: paths run into it.

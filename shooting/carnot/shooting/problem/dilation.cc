@@ -123,16 +123,10 @@ struct Flag {
   }
 };
 
-}  // namespace
-
-std::optional<Dilation> Dilation::at_start(const BoundaryValueProblem& problem) {
-  constexpr double kStep = 1e-2;  // of differences, in units of S
+// The flag at the start, as far as brackets of four fields tell. S is `unit`.
+Flag flag_at_start(const BoundaryValueProblem& problem, double unit, Fields& fields) {
   constexpr int kMostBrackets = 4;
   const int n = problem.dynamics.dof;
-  Dilation dilation;
-  dilation.from_ = problem.from;
-  dilation.unit_ = start_scales(problem).radian;
-  Fields fields(problem.dynamics, problem.from, kStep * dilation.unit_);
   const Eigen::Map<const VectorXd> from(problem.from.data(), n);
   std::vector<Direction> directions;
   for (int i = 0; i < n; ++i) {
@@ -146,7 +140,7 @@ std::optional<Dilation> Dilation::at_start(const BoundaryValueProblem& problem) 
   std::vector<int> latest = fields_of(directions);
   double scale = 1;
   for (int weight = 2; weight <= kMostBrackets && !flag.complete(); ++weight) {
-    scale *= dilation.unit_;
+    scale *= unit;
     directions.clear();
     for (const int x : frame) {
       for (const int field : latest) {
@@ -158,6 +152,36 @@ std::optional<Dilation> Dilation::at_start(const BoundaryValueProblem& problem) 
     flag.extend(fields, directions, weight);
     latest = fields_of(directions);
   }
+  return flag;
+}
+
+Fields fields_at_start(const BoundaryValueProblem& problem, double unit) {
+  constexpr double kStep = 1e-2;  // of differences, in units of S
+  return {problem.dynamics, problem.from, kStep * unit};
+}
+
+}  // namespace
+
+BracketSpan bracket_span(const BoundaryValueProblem& problem) {
+  constexpr double kFullRank = 1e-8;  // the directions are orthonormal in the metric
+  const double unit = start_scales(problem).radian;
+  Fields fields = fields_at_start(problem, unit);
+  const MatrixXd basis = flag_at_start(problem, unit, fields).basis;
+  BracketSpan span{problem.dynamics.dof, std::nullopt};
+  if (!basis.allFinite() || !fields.metric().allFinite()) return span;
+  span.dimension = static_cast<int>(basis.cols());
+  if (span.dimension == problem.dynamics.dof - 1) {
+    span.annihilator = kernel_line(basis.transpose(), kFullRank);
+  }
+  return span;
+}
+
+std::optional<Dilation> Dilation::at_start(const BoundaryValueProblem& problem) {
+  Dilation dilation;
+  dilation.from_ = problem.from;
+  dilation.unit_ = start_scales(problem).radian;
+  Fields fields = fields_at_start(problem, dilation.unit_);
+  Flag flag = flag_at_start(problem, dilation.unit_, fields);
   if (!flag.complete() || !flag.basis.allFinite()) return std::nullopt;
   dilation.inverse_ = transposed_product(flag.basis, fields.metric());
   dilation.basis_ = std::move(flag.basis);

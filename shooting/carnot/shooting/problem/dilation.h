@@ -43,4 +43,14 @@ class Dilation {
   double unit_ = 1;
 };
 
+// What the admissible velocities at problem.from span together with their brackets of up to four.
+struct BracketSpan {
+  int dimension = 0;  // n where they cannot be evaluated
+  // The covector of length 1 that annihilates them, where they leave one direction out: the
+  // derivatives of a quantity that the constraints keep, unless longer brackets tell otherwise.
+  std::optional<Eigen::VectorXd> annihilator;
+};
+// Cost: some hundred evaluations of the constraints.
+BracketSpan bracket_span(const BoundaryValueProblem& problem);
+
 }  // namespace carnot::internal

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 #include "carnot/shooting/extremal/conjugate_times.h"
 #include "carnot/shooting/linear/dense.h"
 #include "carnot/shooting/linear/round_off.h"
+#include "carnot/shooting/problem/dilation.h"
 #include "carnot/shooting/problem/ends.h"
 #include "carnot/shooting/shoot/end_point.h"
 
@@ -115,7 +117,43 @@ bool in_the_way(const BoundaryValueProblem& problem, const Search& search) {
 constexpr const char* kOtherCoordinates =
     "try more --starts, ends further from it, or other coordinates, such as a unit quaternion";
 
-Failure no_discrete(const BoundaryValueProblem& problem, const Search& search) {
+// Constraints that can be integrated keep a quantity, and lead to no target where it has another
+// value. What tells of that; empty where nothing does.
+std::string kept_quantity(const BoundaryValueProblem& problem, const NaturalScales& scales) {
+  constexpr double kDifferences = 2e-3;  // brackets are differences
+  const int n = problem.dynamics.dof;
+  if (!problem.dynamics.has_transcription()) return "";
+  BoundaryValueProblem back = problem;
+  std::swap(back.from, back.to);
+  const BracketSpan span = bracket_span(problem);
+  if (span.dimension == n || bracket_span(back).dimension == n) return "";
+  std::ostringstream text;
+  text.precision(3);
+  text << "at both ends the admissible velocities and their brackets of up to four span no more "
+          "than "
+       << span.dimension << " of " << n << " directions, so that the constraints seem to keep ";
+  if (!span.annihilator) {
+    text << n - span.dimension << " quantities";
+  } else {
+    std::vector<double> slopes(n);
+    for (int j = 0; j < n; ++j) slopes[j] = (*span.annihilator)[j] / scales.q[j];
+    const double largest = *std::max_element(
+        slopes.begin(), slopes.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+    text << "a quantity with the derivatives ";
+    for (int j = 0; j < n; ++j) {
+      const double slope = slopes[j] / largest;
+      text << (j == 0 ? '(' : ' ') << (std::abs(slope) < kDifferences ? 0 : slope)
+           << (j + 1 < n ? ',' : ')');
+    }
+    text << " at the start";
+  }
+  text << ", and no target with another value can be reached";
+  return text.str();
+}
+
+Failure no_discrete(const BoundaryValueProblem& problem,
+                    const NaturalScales& scales,
+                    const Search& search) {
   const std::string none = "no path relaxed to a discrete extremal (" + effort(problem, search);
   if (in_the_way(problem, search)) {
     return {Reason::kSingularCoordinates,
@@ -125,10 +163,12 @@ Failure no_discrete(const BoundaryValueProblem& problem, const Search& search) {
   residual.precision(2);
   residual << "best residual " << search.least_residual() << " of the momentum";
   const bool collapsed = std::isinf(search.least_residual());
-  return {Reason::kNoStartConverged,
-          none + ", " + (collapsed ? "all collapsed to the straight line" : residual.str()) +
-              regularity(problem) +
-              "): try more --starts, another --seed, or a target less far away"};
+  const std::string kept = kept_quantity(problem, scales);
+  return {
+      Reason::kNoStartConverged,
+      none + ", " + (collapsed ? "all collapsed to the straight line" : residual.str()) +
+          regularity(problem) + "): " +
+          (kept.empty() ? "try more --starts, another --seed, or a target less far away" : kept)};
 }
 
 }  // namespace
@@ -176,7 +216,7 @@ Failure explain_failure(const BoundaryValueProblem& problem,
                 "): try more --starts, another --seed, a --guess, or a target less far away"};
   }
   const Path* nearest = search.nearest_discrete();
-  if (nearest == nullptr) return no_discrete(problem, search);
+  if (nearest == nullptr) return no_discrete(problem, scales, search);
   const Knots knots = knots_of(*nearest, 1);
   const EndPoint end = end_point(problem, scales, start_unknowns(problem, knots.at(0)));
   const bool beyond = !joined && end.beyond_double;
