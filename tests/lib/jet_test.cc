@@ -21,7 +21,7 @@ using JJ = Jet<J, 2>;
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr double kFew = 16 * kEps;  // of formulas of a few operations on numbers of order 1
 
-J variable(double value, int direction) { return J(value, direction); }
+J variable(double value, int direction) { return {value, direction}; }
 JJ second(double value, int direction) { return {J(value, direction), direction}; }
 
 void expect_near(const J& x, const J& y) {

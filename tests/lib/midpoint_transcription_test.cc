@@ -76,7 +76,7 @@ class MidpointTest : public ::testing::Test {
   using Unknowns = Vector<double, kUnknowns>;
 
   const System system_ = dynamics_calls::transcription(make_system(test::uneven<Scene>()));
-  const Calls<Scene> calls_;
+  const Calls<Scene> calls_{};
   test::Generator generator_{1};
 
   [[nodiscard]] Vector<double, kTerms> terms(const Vector<double, 2 * kDof>& x) const {
@@ -113,17 +113,17 @@ auto difference(const F& f, const X& x, int i) {
 }
 
 TYPED_TEST(MidpointDerivativesTest, JacobianAgreesWithDifferences) {
-  constexpr int columns = 2 * TypeParam::kDof;
-  constexpr int rows = TestFixture::kTerms;
-  using RowMajor = Eigen::Matrix<double, rows, columns, Eigen::RowMajor>;
+  constexpr int kColumns = 2 * TypeParam::kDof;
+  constexpr int kRows = TestFixture::kTerms;
+  using RowMajor = Eigen::Matrix<double, kRows, kColumns, Eigen::RowMajor>;
   for (int sample = 0; sample < 20; ++sample) {
-    const auto x = test::random_vector<columns>(this->generator_);
-    Vector<double, rows> values;
+    const auto x = test::random_vector<kColumns>(this->generator_);
+    Vector<double, kRows> values;
     RowMajor jacobian;
     ASSERT_TRUE(this->calls_.midpoint(
         x.data(), x.data() + TypeParam::kDof, values.data(), jacobian.data()));
     EXPECT_LE((values - this->terms(x)).cwiseAbs().maxCoeff(), 64 * kEps);
-    for (int i = 0; i < columns; ++i) {
+    for (int i = 0; i < kColumns; ++i) {
       const auto column = difference([&](const auto& y) { return this->terms(y); }, x, i);
       EXPECT_LE((column - jacobian.col(i)).cwiseAbs().maxCoeff(), kDifferences);
     }
@@ -151,7 +151,7 @@ TYPED_TEST(MidpointTest, TermsMakeTheLagrangian) {
 
 // The gradient against F_d itself.
 TYPED_TEST(MidpointDerivativesTest, GradientAgreesWithDifferences) {
-  constexpr int size = TestFixture::kUnknowns;
+  constexpr int kSize = TestFixture::kUnknowns;
   constexpr int n = TypeParam::kDof;
   constexpr int k = TestFixture::kMultipliers;
   constexpr double h = 0.5;
@@ -166,9 +166,9 @@ TYPED_TEST(MidpointDerivativesTest, GradientAgreesWithDifferences) {
     return Vector<double, 1>(Vector<double, 1>::Constant(h * value));
   };
   for (int sample = 0; sample < 10; ++sample) {
-    const auto x = test::random_vector<size>(this->generator_);
+    const auto x = test::random_vector<kSize>(this->generator_);
     const auto slope = this->gradient(h, x);
-    for (int i = 0; i < size; ++i) {
+    for (int i = 0; i < kSize; ++i) {
       EXPECT_NEAR(slope[i], difference(discrete, x, i)[0], kDifferences);
     }
   }
@@ -176,18 +176,18 @@ TYPED_TEST(MidpointDerivativesTest, GradientAgreesWithDifferences) {
 
 // The Hessian against the gradient.
 TYPED_TEST(MidpointDerivativesTest, HessianAgreesWithDifferencesAndIsSymmetric) {
-  constexpr int size = TestFixture::kUnknowns;
+  constexpr int kSize = TestFixture::kUnknowns;
   constexpr double h = 0.5;
-  using Square = Matrix<double, size, size>;
+  using Square = Matrix<double, kSize, kSize>;
   for (int sample = 0; sample < 10; ++sample) {
-    const auto x = test::random_vector<size>(this->generator_);
-    Vector<double, size> slope;
+    const auto x = test::random_vector<kSize>(this->generator_);
+    Vector<double, kSize> slope;
     Square hessian;
     this->calls_.discrete_lagrangian(h, x.data(), slope.data(), hessian.data());
     const double scale = std::max(1.0, hessian.cwiseAbs().maxCoeff());
     EXPECT_LE((slope - this->gradient(h, x)).cwiseAbs().maxCoeff(), 64 * kEps * scale);
     EXPECT_LE((hessian - hessian.transpose()).cwiseAbs().maxCoeff(), 64 * kEps * scale);
-    for (int i = 0; i < size; ++i) {
+    for (int i = 0; i < kSize; ++i) {
       const auto column = difference([&](const auto& y) { return this->gradient(h, y); }, x, i);
       EXPECT_LE((column - hessian.col(i)).cwiseAbs().maxCoeff(), kDifferences * scale);
     }
@@ -303,7 +303,7 @@ void expect_same(const std::vector<double>& a, const std::vector<double>& b) {
 // of them, in every second sample.
 TYPED_TEST(MidpointDerivativesTest, SideBySideIsOneByOne) {
   constexpr int n = TypeParam::kDof;
-  constexpr int count = TestFixture::kTerms;
+  constexpr int kCount = TestFixture::kTerms;
   constexpr int m = TestFixture::kUnknowns;
   constexpr double kFar = 4e6;
   constexpr double h = 0.3;
@@ -321,7 +321,7 @@ TYPED_TEST(MidpointDerivativesTest, SideBySideIsOneByOne) {
       x[(2 * n - 1) * kTranscriptionLanes + 5] += kFar;
     }
     const double* const v = x.data() + n * kTranscriptionLanes;
-    Packed terms = packed(count), slopes = packed(count * 2 * n), again = packed(count);
+    Packed terms = packed(kCount), slopes = packed(kCount * 2 * n), again = packed(kCount);
     Packed gradient = packed(m), hessian = packed(m * m), first = packed(m);
     ASSERT_TRUE(packed_midpoint_terms(f, &this->calls_, x.data(), v, terms.data(), slopes.data()));
     ASSERT_TRUE(packed_midpoint_terms(f, &this->calls_, x.data(), v, again.data(), nullptr));
@@ -329,7 +329,7 @@ TYPED_TEST(MidpointDerivativesTest, SideBySideIsOneByOne) {
     packed_discrete_lagrangian(f, &this->calls_, h, x.data(), first.data(), nullptr);
     for (int l = 0; l < kTranscriptionLanes; ++l) {
       const std::vector<double> own = lane(x, l);
-      std::vector<double> a(count), b(count * 2 * n), c(m), d(m * m);
+      std::vector<double> a(kCount), b(kCount * 2 * n), c(m), d(m * m);
       ASSERT_TRUE(this->calls_.midpoint(own.data(), own.data() + n, a.data(), b.data()));
       expect_same(lane(terms, l), a);
       expect_same(lane(again, l), a);
@@ -345,20 +345,20 @@ TYPED_TEST(MidpointDerivativesTest, SideBySideIsOneByOne) {
 // One interval that cannot be evaluated is told, and the others are right all the same.
 TYPED_TEST(MidpointDerivativesTest, OneFailureSideBySideDoesNotSpoilTheOthers) {
   constexpr int n = TypeParam::kDof;
-  constexpr int count = TestFixture::kTerms;
+  constexpr int kCount = TestFixture::kTerms;
   constexpr int kBroken = 3;
   Packed x = packed(2 * n);
   for (double& number : x) number = std::uniform_real_distribution<double>(-1, 1)(this->generator_);
   for (int j = 0; j < n; ++j) {
     x[j * kTranscriptionLanes + kBroken] = std::numeric_limits<double>::quiet_NaN();
   }
-  Packed terms = packed(count);
+  Packed terms = packed(kCount);
   const double* const v = x.data() + n * kTranscriptionLanes;
   const bool good = packed_midpoint_terms(
       this->calls_.functions(), &this->calls_, x.data(), v, terms.data(), nullptr);
   for (int l = 0; l < kTranscriptionLanes; ++l) {
     const std::vector<double> own = lane(x, l);
-    std::vector<double> a(count);
+    std::vector<double> a(kCount);
     const bool found = this->calls_.midpoint(own.data(), own.data() + n, a.data(), nullptr);
     if (l == kBroken) {
       EXPECT_EQ(good, found);
