@@ -119,8 +119,8 @@ TYPED_TEST(VelocityConstraintsTest, FrameSpansTheKernel) {
     const auto b = scene.frame(q);
     EXPECT_LE((scene.constraints(q) * b).cwiseAbs().maxCoeff(), 8 * kEps);
     const auto gram = (b.transpose() * b).eval();
-    constexpr int columns = TypeParam::kDof - TypeParam::kMultipliers;
-    EXPECT_TRUE((Cholesky<double, columns>(gram).positive()));
+    constexpr int kColumns = TypeParam::kDof - TypeParam::kMultipliers;
+    EXPECT_TRUE((Cholesky<double, kColumns>(gram).positive()));
   });
 }
 

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "carnot/shooting/find_geodesics.h"
@@ -20,7 +21,7 @@ constexpr long kSteps = 64;
 
 // A geodesic of `problem`, the model of its end, and that end.
 struct Modelled {
-  explicit Modelled(const BoundaryValueProblem& given) : problem(given) {
+  explicit Modelled(BoundaryValueProblem given) : problem(std::move(given)) {
     GeodesicOptions options;
     options.samples = 0;
     const std::vector<double> found = find_geodesics(problem, options).geodesics.at(0).p0;

@@ -15,7 +15,8 @@ FieldGrid square() {
   FieldGrid grid;
   grid.to = {0, 0};
   std::vector<double> values(kCount);
-  for (int i = 0; i < kCount; ++i) values[i] = 0.1 * (i - kCount / 2);
+  constexpr int kMiddle = kCount / 2;
+  for (int i = 0; i < kCount; ++i) values[i] = 0.1 * (i - kMiddle);
   grid.axes = {{0, values, false, 0}, {1, values, false, 0}};
   return grid;
 }

@@ -38,11 +38,11 @@ class FieldState : public ::testing::Test {
     options.keep = [this](const auto& write) {
       std::ostringstream text;
       write(text);
-      states.push_back(text.str());
+      states_.push_back(text.str());
     };
-    whole = vehicles(options);
-    ASSERT_TRUE(whole.finished);
-    ASSERT_GT(states.size(), 8U);
+    whole_ = vehicles(options);
+    ASSERT_TRUE(whole_.finished);
+    ASSERT_GT(states_.size(), 8U);
   }
   static Field from(const std::string& state) {
     std::istringstream text(state);
@@ -51,37 +51,37 @@ class FieldState : public ::testing::Test {
     return vehicles(options);
   }
 
-  Field whole;
-  std::vector<std::string> states;
+  Field whole_;
+  std::vector<std::string> states_;
 };
 
 TEST_F(FieldState, LeadsToTheSameField) {
-  for (std::size_t k = 0; k < states.size(); k += states.size() / 5) {
-    const Field field = from(states[k]);
+  for (std::size_t k = 0; k < states_.size(); k += states_.size() / 5) {
+    const Field field = from(states_[k]);
     EXPECT_GT(field.resumed, 0);
-    EXPECT_EQ(field.action, whole.action);
-    EXPECT_EQ(field.p0, whole.p0);
-    EXPECT_EQ(field.error, whole.error);
-    EXPECT_EQ(field.label, whole.label);
-    EXPECT_EQ(field.searches, whole.searches);
-    EXPECT_EQ(field.pushes, whole.pushes);
-    EXPECT_EQ(field.sweeps, whole.sweeps);
-    EXPECT_EQ(field.checked, whole.checked);
+    EXPECT_EQ(field.action, whole_.action);
+    EXPECT_EQ(field.p0, whole_.p0);
+    EXPECT_EQ(field.error, whole_.error);
+    EXPECT_EQ(field.label, whole_.label);
+    EXPECT_EQ(field.searches, whole_.searches);
+    EXPECT_EQ(field.pushes, whole_.pushes);
+    EXPECT_EQ(field.sweeps, whole_.sweeps);
+    EXPECT_EQ(field.checked, whole_.checked);
   }
 }
 
 TEST_F(FieldState, OfAWholeFieldNeedsNoSearches) {
-  std::istringstream text(states.back());
+  std::istringstream text(states_.back());
   FieldOptions options = quick();
   options.state = &text;
   int kept = 0;
   options.keep = [&kept](const auto&) { ++kept; };
-  EXPECT_EQ(vehicles(options).action, whole.action);
+  EXPECT_EQ(vehicles(options).action, whole_.action);
   EXPECT_EQ(kept, 0);
 }
 
 TEST_F(FieldState, IsRefusedWhereItIsDamaged) {
-  const std::string& state = states.back();
+  const std::string& state = states_.back();
   EXPECT_THROW(from(""), DamagedState);
   EXPECT_THROW(from(state.substr(0, state.size() / 2)), DamagedState);
   EXPECT_THROW(from(state.substr(0, state.size() - 1)), DamagedState);
@@ -98,7 +98,7 @@ TEST_F(FieldState, IsThatOfOneField) {
   FieldOptions other_size = quick();
   other_size.branches = 2;
   for (FieldOptions options : {other_seed, other_size}) {
-    std::istringstream text(states.back());
+    std::istringstream text(states_.back());
     options.state = &text;
     EXPECT_THROW(vehicles(options), DamagedState);
   }
