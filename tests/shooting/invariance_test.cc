@@ -172,7 +172,8 @@ TEST(Invariances, OfUnitsWithLimits) {
       {all[0], "limit y < 1.05 L\n"},
       {all[1], "limit -0.5 < phi - theta < 0.5\n"},
       {all[2], "limit -0.5 < phi < 0.5\n"}};
-  for (auto [subject, limit] : limited) {
+  for (const auto& [free, limit] : limited) {
+    Subject subject = free;
     subject.text += limit;
     const std::vector<double> from{0, 0, 0, 0};
     const std::vector<double> to{0.3, 1, 0.2, 0.1};
@@ -488,7 +489,8 @@ TEST_P(RescaledTranscription, IsTheSameSideBySide) {
   const BoundaryValueProblem problem = rescaled(own, natural_scales(own));
   const std::size_t m = 2 * n + problem.dynamics.transcribed;
   std::vector<double> x(m * kLanes), gradient(x.size()), hessian(m * x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::sin(1.0 + i) + (i < x.size() / 2 ? 2 : 0);
+  for (std::size_t i = 0; i < x.size(); ++i)
+    x[i] = std::sin(static_cast<double>(i + 1)) + (i < x.size() / 2 ? 2 : 0);
   problem.dynamics.discrete_lagrangians(0.1, x, gradient, hessian);
   for (int l = 0; l < kLanes; ++l) {
     std::vector<double> at(m), first(m), second(m * m);

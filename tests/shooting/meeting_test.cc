@@ -45,7 +45,9 @@ MeetingOfVehicles meeting_of_vehicles(const Dynamics& dynamics) {
 // What is missed when a rival is carried is of second order in the change of the ray.
 TEST(Meeting, RivalsAreCarriedToFirstOrder) {
   const Dynamics dynamics = vehicle();
-  const auto [ray, rival] = meeting_of_vehicles(dynamics);
+  const MeetingOfVehicles meeting = meeting_of_vehicles(dynamics);
+  const Ray& ray = meeting.ray;
+  const Rival& rival = meeting.rival;
   const std::vector<double> way{-0.3, 0.2, -0.5, 0.1};
   const auto missed = [&](double step) {
     std::vector<double> to = ray.p();

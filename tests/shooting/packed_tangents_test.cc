@@ -58,7 +58,7 @@ TEST(PackedTangents, EndsAreThoseOfFlows) {
   const BoundaryValueProblem problem = test::unicycle({0, 0, 0.3}, {0, 0, 0});
   constexpr int kCount = 11;
   std::vector<SmallVector> p0;
-  for (int i = 0; i < kCount; ++i) p0.push_back(Eigen::Vector3d(i - 3.5, 1, 0.5 * i));
+  for (int i = 0; i < kCount; ++i) p0.emplace_back(Eigen::Vector3d(i - 3.5, 1, 0.5 * i));
   // Errors of steps add up.
   for (const auto& [tolerance, allowed] : {std::pair{kCoarseFlow, 1e-4}, {kFineFlow, 1e-10}}) {
     const std::vector<PackedEnd> ends = packed_ends(problem, p0, std::vector(p0.size(), tolerance));
