@@ -50,8 +50,9 @@ TEST(SolveField, AgreesWithSearches) {
   options.samples = 0;
   options.seed = 5;
   for (int i = 7; i < 17 * 17 * 18; i += 521) {
-    const std::vector<double> to{
-        -2 + 0.25 * (i / 18 / 17), -2 + 0.25 * (i / 18 % 17), -kPi + kPi / 9 * (i % 18)};
+    const int column = i / 18 / 17;
+    const int row = i / 18 % 17;
+    const std::vector<double> to{-2 + 0.25 * column, -2 + 0.25 * row, -kPi + kPi / 9 * (i % 18)};
     const double action =
         find_geodesics(test::unicycle({0, 0, 0}, to), options).geodesics.at(0).action;
     EXPECT_NEAR(field.action[i], action, kSame * action) << i;

@@ -36,7 +36,7 @@ Point flow(const Dynamics& d, Point z, double t, long steps = 100) {
 }
 
 double hamiltonian(const Dynamics& d, const Point& z) {
-  const std::size_t n = static_cast<std::size_t>(d.dof);
+  const auto n = static_cast<std::size_t>(d.dof);
   Point v(n);
   Point lambda(static_cast<std::size_t>(d.multipliers));
   const std::span<const double> at(z);

@@ -46,7 +46,7 @@ template <class Scene, int s>
 void expect_no_allocation(const Tableau<double, s>& tableau, double h, bool newton) {
   using System = VelocityConstraints<Scene>;
   using Step = RungeKutta<System, s>;
-  constexpr int size = Step::kSize;
+  constexpr int kSize = Step::kSize;
   const System system(test::uneven<Scene>());
   test::Generator generator(1);
   long newton_steps = 0;
@@ -62,7 +62,7 @@ void expect_no_allocation(const Tableau<double, s>& tableau, double h, bool newt
               0);
     newton_steps += report.newton_steps;
     EXPECT_EQ(allocations_in([&] {
-                using Square = Matrix<double, size, size>;
+                using Square = Matrix<double, kSize, kSize>;
                 Step step(system, tableau);
                 auto z = start;
                 Compensated<Square> m{Square::Identity(), Square::Zero()};

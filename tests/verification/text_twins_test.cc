@@ -405,7 +405,7 @@ TEST_P(HolonomicTwins, ProjectOnTheManifold) {
   std::vector<double> again = z;
   ASSERT_TRUE(d.project_on_manifold(0, again));
   EXPECT_LE(distance(z, again), 64 * kEps * (1 + largest(z)));
-  const std::size_t size = static_cast<std::size_t>(2 * n);
+  const std::size_t size = z.size();
   std::vector<double> p(size * size);
   ASSERT_TRUE(d.tangent_projector(0, z, p));
   double trace = 0;
@@ -421,7 +421,9 @@ TEST_P(HolonomicTwins, ProjectOnTheManifold) {
   // A small step along the manifold stays on it to second order.
   std::vector<double> step(size);
   for (std::size_t i = 0; i < size; ++i) {
-    for (std::size_t j = 0; j < size; ++j) step[i] += p[j * size + i] * std::cos(2.1 * j);
+    for (std::size_t j = 0; j < size; ++j) {
+      step[i] += p[j * size + i] * std::cos(2.1 * static_cast<double>(j));
+    }
   }
   constexpr double kSmall = 1e-5;
   std::vector<double> moved = z;
