@@ -18,51 +18,44 @@ struct Heavier {
 
   static const Heavier& from(const void* opaque) { return *static_cast<const Heavier*>(opaque); }
   [[nodiscard]] const void* system() const { return own.system.get(); }
-  // To the entries of `lanes` points side by side, in rows of so many numbers.
-  template <int lanes>
-  void add(int row, double* out) const {
-    for (std::size_t i = 0; i < more.size(); ++i) {
-      double* const mass = out + (i * (i + 1) / 2 + i) * row * lanes;
-      for (int l = 0; l < lanes; ++l) mass[l] += more[i];
-    }
-  }
 };
 
-Dynamics heavier(const Dynamics& dynamics, std::vector<double> more) {
-  const auto scene =
-      std::make_shared<Heavier>(Heavier{dynamics, std::move(more), *dynamics.transcription});
-  TranscriptionFunctions& calls = scene->transcription;
-  calls.entries =
-      [](const void* opaque, const double* q, const GaugeUnits& units, bool slopes, double* out) {
-        const Heavier& h = Heavier::from(opaque);
-        h.own.transcription->entries(h.system(), q, units, slopes, out);
-        h.add<1>(slopes ? row_length(h.own.dof) : 1, out);
-      };
-  calls.hessian = [](const void* opaque,
+// The scene's own Hessians, which more mass does not change: of one point, or of a pack.
+template <auto call>
+void heavier_hessian(const void* opaque,
                      const double* q,
                      const double* v,
                      const double* lambda,
                      const GaugeUnits& units,
                      double* l_qq) {
-    const Heavier& h = Heavier::from(opaque);
-    h.own.transcription->hessian(h.system(), q, v, lambda, units, l_qq);
-  };
+  const Heavier& h = Heavier::from(opaque);
+  (h.own.transcription->*call)(h.system(), q, v, lambda, units, l_qq);
+}
+
+// The entries of `lanes` points side by side, with more mass each.
+template <auto call, int lanes>
+void heavier_entries(
+    const void* opaque, const double* q, const GaugeUnits& units, bool slopes, double* out) {
+  const Heavier& h = Heavier::from(opaque);
+  (h.own.transcription->*call)(h.system(), q, units, slopes, out);
+  const int length = lanes == 1 ? row_length(h.own.dof) : 1 + h.own.dof;  // of a row with slopes
+  const int row = (slopes ? length : 1) * lanes;
+  for (std::size_t i = 0; i < h.more.size(); ++i) {
+    double* const mass = out + (i * (i + 1) / 2 + i) * row;
+    for (int l = 0; l < lanes; ++l) mass[l] += h.more[i];
+  }
+}
+
+Dynamics heavier(const Dynamics& dynamics, std::vector<double> more) {
+  using Functions = TranscriptionFunctions;
+  const auto scene =
+      std::make_shared<Heavier>(Heavier{dynamics, std::move(more), *dynamics.transcription});
+  Functions& calls = scene->transcription;
+  calls.entries = heavier_entries<&Functions::entries, 1>;
+  calls.hessian = heavier_hessian<&Functions::hessian>;
   if (calls.packed_entries != nullptr) {
-    calls.packed_entries =
-        [](const void* opaque, const double* q, const GaugeUnits& units, bool slopes, double* out) {
-          const Heavier& h = Heavier::from(opaque);
-          h.own.transcription->packed_entries(h.system(), q, units, slopes, out);
-          h.add<kTranscriptionLanes>(slopes ? 1 + h.own.dof : 1, out);
-        };
-    calls.packed_hessian = [](const void* opaque,
-                              const double* q,
-                              const double* v,
-                              const double* lambda,
-                              const GaugeUnits& units,
-                              double* l_qq) {
-      const Heavier& h = Heavier::from(opaque);
-      h.own.transcription->packed_hessian(h.system(), q, v, lambda, units, l_qq);
-    };
+    calls.packed_entries = heavier_entries<&Functions::packed_entries, kTranscriptionLanes>;
+    calls.packed_hessian = heavier_hessian<&Functions::packed_hessian>;
   }
   Dynamics result = dynamics;
   result.system = scene;
