@@ -37,7 +37,7 @@ std::vector<double> momentum_of(const Dynamics& dynamics,
     refuse(
         "--velocity",
         text,
-        fmt::format("it violates the constraints at --from, residual |g|/|v| = {:.3g}", residual),
+        fmt::format("it violates the constraints at --from, relative residual = {:.3g}", residual),
         fmt::format("a velocity with residual <= {:g}", kVelocityTolerance));
   }
   dynamics.momentum(t, q, velocity, lambda, p);

@@ -121,7 +121,7 @@ TEST(LagrangianFailureTest, ProjectionOnTheCone) {
     Q v = velocity;
     Q p;
     const double violated = system.admissible_momentum(0.0, kOrigin, v, Lambda(0.3), p);
-    EXPECT_NEAR(violated, system.constraint(kOrigin, velocity).norm() / velocity.norm(), 4 * kEps);
+    EXPECT_NEAR(violated, (v - velocity).norm() / velocity.norm(), 4 * kEps);
     EXPECT_LE(system.constraint(kOrigin, v).norm(), 16 * kEps);
     EXPECT_LE((p - Q(0.4 * v[0], 0.4 * v[1], 1.6 * v[2])).norm(), 16 * kEps);
     const Q once = v;
@@ -139,16 +139,16 @@ TEST(LagrangianFailureTest, ProjectionThatFails) {
   const Vector<double, 2> velocity(1, 0.5);
   Vector<double, 2> v = velocity;
   const LagrangianSystem<UnitSpeed> impossible{{-1}};
-  EXPECT_EQ(impossible.project(q, v), RateStatus::kNoSolution);
+  EXPECT_EQ(impossible.project(0.0, q, v), RateStatus::kNoSolution);
   EXPECT_EQ(v, velocity);
   Vector<double, 2> p;
   EXPECT_TRUE(std::isnan(impossible.admissible_momentum(0.0, q, v, Lambda(0), p)));
   // At rest the unit circle has no nearest point.
   const LagrangianSystem<UnitSpeed> circle{{1}};
   v.setZero();
-  EXPECT_EQ(circle.project(q, v), RateStatus::kConstraintRank);
+  EXPECT_EQ(circle.project(0.0, q, v), RateStatus::kConstraintRank);
   v[0] = kNan;
-  EXPECT_EQ(circle.project(q, v), RateStatus::kNotFinite);
+  EXPECT_EQ(circle.project(0.0, q, v), RateStatus::kNotFinite);
 }
 
 }  // namespace

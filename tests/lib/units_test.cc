@@ -1,4 +1,5 @@
 // The same motion in other units: what is reported must be the same number of them.
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,11 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "carnot/load_scene.h"
 #include "carnot/make_dynamics.h"
 #include "carnot/make_rattle_dynamics.h"
 #include "carnot/scene/unit_sizes.h"
 #include "carnot/scenes/spherical_pendulum.h"
 #include "carnot/scenes/vehicle.h"
+#include "testing/lagrangian_forms.h"
 
 namespace carnot::units_test {
 namespace {
@@ -79,6 +82,50 @@ TEST(UnitsTest, MultipliersAreFoundInAllOfThem) {
     EXPECT_EQ(vehicle(u).evaluate(0, q, momentum, rate, found).status, RateStatus::kOk) << u;
     for (int i = 0; i < n; ++i) EXPECT_NEAR(rate[i] / units[i], v[i], 16 * kEps) << u;
     for (int i = 0; i < 2; ++i) EXPECT_NEAR(found[i] / u, lambda[i], 64 * kEps) << u;
+  }
+}
+
+// The vehicle by masses and rows, by L and g, and by both from text.
+std::vector<Dynamics> forms_of_vehicle(double u) {
+  const scenes::Vehicle scene{.alpha = u * u, .beta = u * u, .length = u};
+  const std::string rows = fmt::format(
+      "coordinates x, y, theta, phi\n"
+      "parameters u = {:.17g}\n"
+      "0 = x' sin(phi) - y' cos(phi)\n"
+      "0 = x' sin(theta) - y' cos(theta) + u theta'\n",
+      u);
+  const std::string energy = "(x'^2 + y'^2 + u^2 theta'^2 + u^2 phi'^2) / 2\n";
+  return {make_dynamics(scene),
+          make_dynamics(test::LagrangianVehicle{scene}),
+          make_dynamics(scene_from_text(rows + "kinetic = " + energy)),
+          make_dynamics(scene_from_text(rows + "lagrangian = " + energy))};
+}
+
+// Their projection, how far it is, and the momentum of it. With rows that are 1e-12 apart there was
+// none.
+TEST(UnitsTest, VelocitiesAreProjectedAlikeInAllOfThem) {
+  const Numbers q{0, 0, 0.25, 0.3};
+  const Numbers lambda{0.3, -0.2};
+  const Numbers given{0.4, 0.9, -0.3, 0.7};
+  Numbers plain = given;
+  Numbers p(n);
+  const double moved = vehicle(1).momentum(0, q, plain, lambda, p);
+  EXPECT_NEAR(std::hypot(plain[0] - given[0], plain[1] - given[1], plain[2] - given[2]),
+              moved * std::hypot(0.4, 0.9, std::hypot(0.3, 0.7)),
+              8 * kEps);
+  for (const double u : {1e-12, 1e-6, 1.0, 1e6, 1e12}) {
+    const Numbers units = units_of_vehicle(u);
+    const Numbers forces{lambda[0] * u, lambda[1] * u};
+    for (const Dynamics& form : forms_of_vehicle(u)) {
+      Numbers v = given;
+      for (int i = 0; i < n; ++i) v[i] *= units[i];
+      Numbers momentum(n);
+      EXPECT_NEAR(form.momentum(0, q, v, forces, momentum), moved, 16 * kEps) << u;
+      for (int i = 0; i < n; ++i) {
+        EXPECT_NEAR(v[i] / units[i], plain[i], 64 * kEps) << u;
+        EXPECT_NEAR(momentum[i] / units[n + i], p[i], 64 * kEps) << u;
+      }
+    }
   }
 }
 

@@ -249,7 +249,7 @@ class Formulator {
     }
     out_.constraint = product(graph_, g, v);
     out_.square_speed = dot(graph_, v, product(graph_, m, v));
-    project(g, out_.constraint);
+    out_.masses = diagonal(m);
     SymbolicVector force = variables(kMultiplier, out_.multipliers);
     force.resize(static_cast<std::size_t>(k), graph_.number(0));
     out_.momentum = product(graph_, m, v);
@@ -344,7 +344,13 @@ class Formulator {
     }
   }
 
-  // G W, as VelocityConstraints::weigh(): the weight of a coordinate is one over its mass.
+  static SymbolicVector diagonal(const SymbolicMatrix& m) {
+    SymbolicVector entries;
+    for (int j = 0; j < m.columns; ++j) entries.push_back(m(j, j));
+    return entries;
+  }
+
+  // G W, as in mass_norm.h: the weight of a coordinate is one over its mass.
   SymbolicMatrix weighed(const SymbolicMatrix& m, SymbolicMatrix g) {
     for (int j = 0; j < g.columns; ++j) {
       const Expression& mass = m(j, j);
@@ -366,16 +372,6 @@ class Formulator {
     SymbolicVector excess = product(graph_, m, v);
     for (std::size_t i = 0; i < excess.size(); ++i) excess[i] = excess[i] - p[i];
     out_.lambda = gram.solve(product(graph_, weighted, excess));
-  }
-
-  // v - G'(G G')^-1 g(q, v), g affine in v.
-  void project(const SymbolicMatrix& g, const SymbolicVector& value) {
-    out_.projected = velocities();
-    if (g.rows == 0) return;
-    const SymbolicCholesky gram(graph_, product(graph_, g, transposed(graph_, g)));
-    gram.add_checks(RateStatus::kConstraintRank, out_.projected_checks);
-    const SymbolicVector part = transposed_product(graph_, g, gram.solve(value));
-    for (int i = 0; i < g.columns; ++i) out_.projected[i] = out_.projected[i] - part[i];
   }
 
   // ---- Lagrangian, H = p.v - L + lambda.g
@@ -451,8 +447,8 @@ class Formulator {
            "holonomic constraints with a Lagrangian that is not quadratic "
            "in the velocities; write coordinates on which they hold");
     }
+    out_.masses = diagonal(m);
     if (!out_.linear) return;
-    project(rows, g);
     SymbolicVector a;
     SymbolicVector b;
     for (int i = 0; i < n; ++i) a.push_back(p[i] - without(slopes[i], kVelocity));

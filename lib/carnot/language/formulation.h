@@ -68,12 +68,9 @@ struct Formulation {
   std::vector<Check> lambda_checks;
   SymbolicVector constraint;               // g of t, q, v; empty: none
   std::optional<Expression> square_speed;  // v'M v of q, v
-  // The admissible velocity nearest to v, of t, q, v; and p of t, q, v, lambda at one. Where both
-  // are formulas.
-  SymbolicVector projected;
-  std::vector<Check> projected_checks;
-  SymbolicVector momentum;
-  SymbolicVector drift;  // with linear controls: the velocity without them
+  SymbolicVector masses;    // of t, q, v: L_vv on the diagonal, which measures velocities
+  SymbolicVector momentum;  // p of t, q, v, lambda at an admissible velocity
+  SymbolicVector drift;     // with linear controls: the velocity without them
   std::optional<TranscriptionFormulas> transcription;
   std::optional<Expression> chart;  // of q
   SymbolicVector holonomic;         // h of q; empty: none

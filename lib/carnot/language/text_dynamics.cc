@@ -10,6 +10,7 @@
 #include "carnot/language/text_points.h"
 #include "carnot/numerics/pseudo_inverse.h"
 #include "carnot/numerics/round_off.h"
+#include "carnot/system/mass_norm.h"
 
 namespace carnot::language {
 namespace {
@@ -17,7 +18,7 @@ namespace {
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
 
-// a x and a'a by loops. Products of Eigen are summed in one order or another by how memory happens
+// a x and a'b by loops. Products of Eigen are summed in one order or another by how memory happens
 // to be aligned, and a result must not depend on that.
 template <class A>
 Vector product(const A& a, const Vector& x) {
@@ -27,11 +28,11 @@ Vector product(const A& a, const Vector& x) {
   }
   return sum;
 }
-TextSquare gram_of(const Matrix& a) {
+TextSquare gram_of(const Matrix& a, const Matrix& b) {
   TextSquare gram = TextSquare::Zero(a.cols(), a.cols());
   for (Eigen::Index j = 0; j < a.cols(); ++j) {
     for (Eigen::Index k = 0; k < a.cols(); ++k) {
-      for (Eigen::Index i = 0; i < a.rows(); ++i) gram(j, k) += a(i, j) * a(i, k);
+      for (Eigen::Index i = 0; i < a.rows(); ++i) gram(j, k) += a(i, j) * b(i, k);
     }
   }
   return gram;
@@ -82,9 +83,18 @@ double chart(const void* opaque, const double* q) {
 
 double norm(const double* x, int count) { return Eigen::Map<const Vector>(x, count).norm(); }
 
-// v <- the nearest velocity with g(t, q, v) = 0, by Gauss-Newton steps of least norm; as
+// The masses of mass_norm.h at (t, q, v).
+Vector counted_masses(const TextSystem& s, const double& t, const double* q, const Vector& v) {
+  Vector masses(s.dof);
+  s.masses.run(at_velocity(t, q, v.data(), kIdle.data()), std::array<double*, 1>{masses.data()});
+  for (double& mass : masses) mass = counted_mass(mass);
+  return masses;
+}
+
+// v <- the nearest velocity with g(t, q, v) = 0 in the norm of `masses`, by Gauss-Newton steps; as
 // LagrangianSystem::project().
-bool project(const TextSystem& s, const double& t, const double* q, Vector& v) {
+bool project(
+    const TextSystem& s, const double& t, const double* q, const Vector& masses, Vector& v) {
   constexpr int kMaxIterations = 50;
   const int n = s.dof;
   const int k = s.constraint_count;
@@ -102,13 +112,13 @@ bool project(const TextSystem& s, const double& t, const double* q, Vector& v) {
       v = x;
       return true;
     }
-    const TextSquare gram = gram_of(columns);
-    const TextEquations::Factor factor(gram);
+    const Matrix weighted = masses.cwiseInverse().asDiagonal() * columns;
+    const TextEquations::Factor factor(gram_of(weighted, columns));
     if (!factor.regular()) return false;
-    const Vector step = -product(columns, factor.solve(g));
-    const double size = step.norm();
+    const Vector step = -product(weighted, factor.solve(g));
+    const double size = mass_norm(masses, step);
     x += step;
-    const double few = resolution * x.norm();
+    const double few = resolution * mass_norm(masses, x);
     if (size <= few || (size <= 16 * few && size >= last)) {
       v = x;
       return true;
@@ -123,26 +133,12 @@ double velocity_momentum(
   const TextSystem& s = system_of(opaque);
   const int n = s.dof;
   Vector v = Eigen::Map<const Vector>(q_dot, n);
-  const double size = v.norm();
-  std::vector<double> g(static_cast<std::size_t>(s.constraint_count));
-  bool found = true;
-  if (s.linear) {
-    std::array<double, kMostChecks> checks;
-    std::array<double, kMostDof> projected;
-    s.projected.run(at_velocity(t, q, q_dot, lambda),
-                    std::array<double*, 3>{projected.data(), g.data(), checks.data()});
-    found = status_of_checks(s.projected_checks, checks.data()) == RateStatus::kOk;
-    std::copy_n(projected.data(), n, v.data());
-  } else {
-    s.constraint.run(at_velocity(t, q, q_dot, lambda), std::array<double*, 2>{g.data(), nullptr});
-    found = project(s, t, q, v);
-  }
-  if (!found) v.setConstant(kNaN);
+  const Vector given = v;
+  const Vector masses = counted_masses(s, t, q, v);
+  if (!project(s, t, q, masses, v)) v.setConstant(kNaN);
   s.momentum.run(at_velocity(t, q, v.data(), lambda), std::array<double*, 1>{p});
   std::copy_n(v.data(), n, q_dot);
-  if (!v.allFinite()) return kNaN;
-  const double violated = norm(g.data(), s.constraint_count);
-  return violated == 0 ? 0 : violated / size;
+  return relative_move(masses, given, v);
 }
 
 using TextPseudoInverse = PseudoInverse<double, Eigen::Dynamic, Eigen::Dynamic>;
@@ -396,7 +392,7 @@ bool project_on_manifold(const void* opaque, double t, double* z) {
   bool found = false;
   for (int iteration = 0; iteration < kMaxIterations && !found; ++iteration) {
     evaluate();
-    const TextSquare gram = gram_of(columns);
+    const TextSquare gram = gram_of(columns, columns);
     const TextEquations::Factor factor(gram);
     if (!factor.regular()) return false;
     const Vector correction = product(columns, factor.solve(h));
@@ -430,7 +426,7 @@ bool tangent_projector(const void* opaque, double t, const double* z, double* pr
   Matrix columns = Matrix::Zero(2 * n, 2 * l);
   columns.topLeftCorner(n, l) = dh;
   columns.rightCols(l) = slopes;
-  gram = gram_of(columns);
+  gram = gram_of(columns, columns);
   const TextEquations::Factor factor(gram);
   if (!factor.regular()) return false;
   Eigen::Map<Matrix> p(projector, 2 * n, 2 * n);

@@ -168,9 +168,7 @@ class TapeMaker {
     const auto slopes = jacobian(graph_, f_.constraint, kVelocity.first, n_);
     system_.constraint = tape({f_.constraint, slopes.entries});
     system_.momentum = tape({f_.momentum});
-    if (f_.projected.empty()) return;
-    system_.projected =
-        tape({f_.projected, f_.constraint, values(f_.projected_checks, system_.projected_checks)});
+    if (!f_.masses.empty()) system_.masses = tape({f_.masses});
   }
 
   // What belongs to x' = f and the cost, from H = p.f - cost.

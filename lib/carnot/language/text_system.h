@@ -38,8 +38,7 @@ struct TextSystem {
   Tape point;      // H, H_t, the square of the speed, g
   Tape lambda;
   std::vector<RateStatus> lambda_checks;
-  Tape projected;  // the admissible velocity, and g at the one given
-  std::vector<RateStatus> projected_checks;
+  Tape masses;      // L_vv on the diagonal
   Tape constraint;  // g, and its derivatives by v, row by row
   Tape momentum;
   Tape controls;  // velocities of linear controls column by column, drift, R, linear part of the

@@ -37,7 +37,7 @@ template <class T, int n>
 //   constraint(q, v)                 g(q, v), length k
 //   speed(q, v)                      the integrand of the length; NaN where there is no metric
 //   admissible_momentum(t, q, v, lambda, p)  projects v on the admissible velocities and makes p of
-//                                    it; returns |g(q, v)| / |v| before, NaN on failure
+//                                    it; returns how far v was moved, relative to v; NaN on failure
 //
 // Optional: regularity(t, q, p, y), and branch(t, q, p, lambda, y): the solution y nearest to
 // these multipliers.

@@ -19,8 +19,10 @@
 
 #include "carnot/numerics/cholesky.h"
 #include "carnot/numerics/gradient.h"
+#include "carnot/numerics/second_jet.h"
 #include "carnot/scene/lagrangian_scene.h"
 #include "carnot/system/index_one_system.h"
+#include "carnot/system/mass_norm.h"
 #include "carnot/system/stationary.h"
 
 namespace carnot {
@@ -122,13 +124,14 @@ class LagrangianSystem {
         v);
   }
 
-  // A velocity with g(q, v) = 0 near v, by Gauss-Newton steps of least norm: for linear g the
-  // nearest one. On failure v is unchanged.
+  // A velocity with g(q, v) = 0 near v, by Gauss-Newton steps that are least in the norm of
+  // mass_norm.h at v: for linear g the nearest one. On failure v is unchanged.
   template <class T>
-  [[nodiscard]] RateStatus project(const Vector<T, kDof>& q, Vector<T, kDof>& v) const {
+  [[nodiscard]] RateStatus project(const T& t, const Vector<T, kDof>& q, Vector<T, kDof>& v) const {
     if constexpr (kMultipliers > 0) {
       constexpr int kMaxIterations = 50;
       const T resolution = T(4) * epsilon<T>();
+      const Vector<T, kDof> masses = counted_masses(t, q, v);
       Vector<T, kDof> x = v;
       T last = std::numeric_limits<T>::max();
       for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
@@ -140,14 +143,15 @@ class LagrangianSystem {
           v = x;
           return RateStatus::kOk;
         }
-        const Matrix<T, kMultipliers, kMultipliers> gram = product(rows, rows.transpose());
+        const Matrix<T, kMultipliers, kDof> weighted = weighed(masses, rows);
+        const Matrix<T, kMultipliers, kMultipliers> gram = product(weighted, rows.transpose());
         const Cholesky<T, kMultipliers> factor(gram);
         if (!factor.positive()) return RateStatus::kConstraintRank;
-        const Vector<T, kDof> step = -product(rows.transpose(), factor.solve(g));
-        const T size = step.norm();
+        const Vector<T, kDof> step = -product(weighted.transpose(), factor.solve(g));
+        const T size = mass_norm(masses, step);
         x += step;
         // At round-off, or as near to it as the rounding of g allows.
-        const T few = resolution * x.norm();
+        const T few = resolution * mass_norm(masses, x);
         if (size <= few || (size <= T(16) * few && size >= last)) {
           v = x;
           return RateStatus::kOk;
@@ -159,19 +163,17 @@ class LagrangianSystem {
     return RateStatus::kOk;
   }
 
-  // p of the projected velocity; returns |g(q, v)| / |v| before the projection.
+  // p of the projected velocity; returns how far that is from v, relative to v.
   template <class T>
   [[nodiscard]] T admissible_momentum(const T& t,
                                       const Vector<T, kDof>& q,
                                       Vector<T, kDof>& v,
                                       const Vector<T, kMultipliers>& lambda,
                                       Vector<T, kDof>& p) const {
-    const T violated = constraint(q, v).norm();
-    const T size = v.norm();
-    if (project(q, v) != RateStatus::kOk) v.setConstant(std::numeric_limits<T>::quiet_NaN());
+    const Vector<T, kDof> given = v;
+    if (project(t, q, v) != RateStatus::kOk) v.setConstant(std::numeric_limits<T>::quiet_NaN());
     p = momentum(t, q, v, lambda);
-    if (!v.allFinite()) return std::numeric_limits<T>::quiet_NaN();
-    return violated == T(0) ? T(0) : T(violated / size);
+    return relative_move(counted_masses(t, q, given), given, v);
   }
 
   [[nodiscard]] Regularity regularity(double t,
@@ -225,6 +227,23 @@ class LagrangianSystem {
   }
 
  private:
+  // As mass_norm.h counts coordinates.
+  template <class T>
+  [[nodiscard]] Vector<T, kDof> counted_masses(const T& t,
+                                               const Vector<T, kDof>& q,
+                                               const Vector<T, kDof>& v) const {
+    using J = SecondJet<T, 1>;
+    const Vector<J, kDof> qj = unseeded<J>(q);
+    Vector<J, kDof> vj = unseeded<J>(v);
+    Vector<T, kDof> masses;
+    for (int j = 0; j < kDof; ++j) {
+      vj[j] = J(v[j], 0);
+      masses[j] = counted_mass(lagrangian(J(t), qj, vj).w[0]);
+      vj[j] = J(v[j]);
+    }
+    return masses;
+  }
+
   // H as a function of v alone.
   struct FixedMultipliers {
     static constexpr int kDof = Scene::kDof;

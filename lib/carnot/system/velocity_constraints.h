@@ -32,6 +32,7 @@
 #include "carnot/scene/chart.h"
 #include "carnot/scene/velocity_constrained_scene.h"
 #include "carnot/system/index_one_system.h"
+#include "carnot/system/mass_norm.h"
 
 namespace carnot {
 
@@ -130,7 +131,8 @@ class VelocityConstraints {
     return a;
   }
 
-  // lambda from p = M v - G' lambda, by G W G' lambda = G W (M v - p), with W of weigh().
+  // lambda from p = M v - G' lambda, by G W G' lambda = G W (M v - p), with W of weighed().
+  // Whether the rows of G are independent does not depend on the units of coordinates then.
   template <class T>
   [[nodiscard]] RateStatus multipliers(const Vector<T, kDof>& q,
                                        const Vector<T, kDof>& p,
@@ -139,7 +141,7 @@ class VelocityConstraints {
     if constexpr (kMultipliers > 0) {
       const Vector<T, kDof> excess = product(scene_.mass(q), v) - p;
       const Matrix<T, kMultipliers, kDof> g = scene_.constraints(q);
-      const Matrix<T, kMultipliers, kDof> weighted = weigh(q, g);
+      const Matrix<T, kMultipliers, kDof> weighted = weighed(counted_masses(q), g);
       const Matrix<T, kMultipliers, kMultipliers> gram = product(weighted, g.transpose());
       const Cholesky<T, kMultipliers> factor(gram);
       if (!factor.positive()) return constraint_failure(gram);
@@ -174,47 +176,43 @@ class VelocityConstraints {
     return p;
   }
 
-  // The velocity in ker G nearest to v in the Euclidean norm.
+  // The velocity in ker G nearest to v in the norm of mass_norm.h.
   template <class T>
   [[nodiscard]] RateStatus project(const Vector<T, kDof>& q, Vector<T, kDof>& v) const {
     if constexpr (kMultipliers > 0) {
       const Matrix<T, kMultipliers, kDof> g = scene_.constraints(q);
-      const Matrix<T, kMultipliers, kMultipliers> gram = product(g, g.transpose());
+      const Matrix<T, kMultipliers, kDof> weighted = weighed(counted_masses(q), g);
+      const Matrix<T, kMultipliers, kMultipliers> gram = product(weighted, g.transpose());
       const Cholesky<T, kMultipliers> factor(gram);
       if (!factor.positive()) return constraint_failure(gram);
       const Vector<T, kMultipliers> violated = product(g, v);
       const Vector<T, kMultipliers> part = factor.solve(violated);
-      v -= product(g.transpose(), part);
+      v -= product(weighted.transpose(), part);
     }
     return RateStatus::kOk;
   }
 
-  // p = M v - G' lambda of the projected velocity; returns |G v| / |v| before the projection.
+  // p = M v - G' lambda of the projected velocity; returns how far that is from v, relative to v.
   template <class T>
   [[nodiscard]] T admissible_momentum(const T& /*t*/,
                                       const Vector<T, kDof>& q,
                                       Vector<T, kDof>& v,
                                       const Vector<T, kMultipliers>& lambda,
                                       Vector<T, kDof>& p) const {
-    const T size = v.norm();
-    const T violated = constraint(q, v).norm();
+    const Vector<T, kDof> given = v;
     if (project(q, v) != RateStatus::kOk) v.setConstant(std::numeric_limits<T>::quiet_NaN());
     p = momentum(q, v, lambda);
-    return size > T(0) ? T(violated / size) : T(0);
+    return relative_move(counted_masses(q), given, v);
   }
 
  private:
-  // G W. The weight of a coordinate is one over its mass, or 1 where it has none: whether the rows
-  // of G are independent does not depend on the units of coordinates then.
+  // As mass_norm.h counts coordinates.
   template <class T>
-  [[nodiscard]] Matrix<T, kMultipliers, kDof> weigh(const Vector<T, kDof>& q,
-                                                    Matrix<T, kMultipliers, kDof> g) const {
+  [[nodiscard]] Vector<T, kDof> counted_masses(const Vector<T, kDof>& q) const {
     const Matrix<T, kDof, kDof> mass = scene_.mass(q);
-    for (int j = 0; j < kDof; ++j) {
-      if (!(mass(j, j) > constant<T>(0))) continue;
-      for (int i = 0; i < kMultipliers; ++i) g(i, j) /= mass(j, j);
-    }
-    return g;
+    Vector<T, kDof> masses;
+    for (int j = 0; j < kDof; ++j) masses[j] = counted_mass(mass(j, j));
+    return masses;
   }
 
   template <class T>
