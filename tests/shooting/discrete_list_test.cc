@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "carnot/shooting/search/starts.h"
 #include "shooting/problems.h"
 
 namespace carnot::internal::discrete_list_test {
@@ -90,6 +92,30 @@ TEST_F(DiscreteListTest, WhatIsClearlyLongerWaits) {
   std::vector<std::size_t> pending{0, 1, 2};
   EXPECT_THAT(list.take_promising(pending), testing::ElementsAre(1, 2));
   EXPECT_THAT(pending, testing::ElementsAre(0));
+}
+
+// Actions of paths with more mass are those of other problems.
+TEST_F(DiscreteListTest, TheLeastIsOfTheLowestRung) {
+  const BoundaryValueProblem light = test::light_steering({1, 1, 0.5, 0.2}, 1e-3);
+  const MassLadder rungs(light);
+  DiscreteList of_rungs(rungs);
+  const auto path_on = [&](int rung, int number, int intervals) {
+    Path path = make_start(light, 0, number, intervals).path;
+    path.lambda.assign(2 * intervals, 0.0);
+    path.rung = rung;
+    return path;
+  };
+  ASSERT_EQ(of_rungs.add(path_on(2, 0, 16), kOneStart), 0U);  // the straight line: of least action
+  EXPECT_EQ(of_rungs.least(), &of_rungs[0].path);
+  ASSERT_EQ(of_rungs.add(path_on(1, 1, 16), kOneStart), 1U);
+  ASSERT_EQ(of_rungs.add(path_on(1, 2, 16), kOneStart), 2U);
+  ASSERT_LT(of_rungs[0].action, std::min(of_rungs[1].action, of_rungs[2].action));
+  const std::size_t less = of_rungs[1].action < of_rungs[2].action ? 1 : 2;
+  EXPECT_EQ(of_rungs.least(), &of_rungs[less].path);
+  of_rungs.refine(0, {path_on(1, 3, 32), path_on(0, 4, 64)}, extremals);
+  ASSERT_NE(of_rungs.least(), nullptr);
+  EXPECT_EQ(of_rungs.least()->rung, 0);
+  EXPECT_EQ(of_rungs.least()->intervals, 64);
 }
 
 TEST_F(DiscreteListTest, OnlyVerifiedOnesAreMeasuresOnceThereAreAny) {

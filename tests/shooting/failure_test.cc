@@ -86,6 +86,18 @@ TEST(Failure, TellsWhatTheConstraintsKeep) {
               testing::Not(testing::HasSubstr("directions")));
 }
 
+// One start on a coarse grid, with a mass that asks for a grid of some 1e5 intervals.
+TEST(Failure, TellsOfMassesThatAreTooLight) {
+  GeodesicOptions options;
+  options.starts = 1;
+  const GeodesicReport report =
+      find_geodesics(test::light_steering({1, 1, 0.5, 0.2}, 1e-9), options);
+  EXPECT_TRUE(report.geodesics.empty());
+  EXPECT_THAT(report.message,
+              testing::AllOf(testing::HasSubstr("none when it was taken away again"),
+                             testing::HasSubstr("try more mass for the lightest coordinate")));
+}
+
 // Near the steering angle pi/2 the bicycle turns on the spot for nothing: paths run into it.
 TEST(Failure, SingularCoordinates) {
   const BoundaryValueProblem problem = test::bicycle({-0.5, 0.5, 1.5, 1.4});

@@ -162,11 +162,22 @@ std::vector<Hits> DiscreteList::hits_given_up() const {
 }
 
 const Path* DiscreteList::least() const {
-  const auto least = std::min_element(
-      list_.begin(), list_.end(), [](const DiscreteExtremal& a, const DiscreteExtremal& b) {
-        return a.action < b.action;
-      });
-  return least == list_.end() ? nullptr : &least->path;
+  const Path* least = nullptr;
+  double action = 0;
+  const auto consider = [&](const Path& path, double of_path) {
+    if (least != nullptr && std::pair(path.rung, of_path) >= std::pair(least->rung, action)) {
+      return;
+    }
+    least = &path;
+    action = of_path;
+  };
+  for (const DiscreteExtremal& known : list_) {
+    consider(known.path, known.action);
+    // On finer grids it is lower on the ladder.
+    if (known.path.rung == 0) continue;
+    for (const DiscretePath& other : known.others) consider(other.path, other.action);
+  }
+  return least;
 }
 
 std::vector<const Path*> DiscreteList::least(int count) const {

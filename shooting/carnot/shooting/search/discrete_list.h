@@ -84,7 +84,7 @@ class DiscreteList {
   // How often each of those given up was seen: of the grid where that was most often, for another
   // grid shows the same ones again.
   [[nodiscard]] std::vector<Hits> hits_given_up() const;
-  // The path of least action; null where there is none.
+  // The path of least action, on the lowest rung that any is known on; null where there is none.
   [[nodiscard]] const Path* least() const;
   // At most `count` paths of extremals and of those given up, least action first. They are valid
   // until the list changes.

@@ -114,6 +114,9 @@ std::string effort(const BoundaryValueProblem& problem, const Search& search) {
 bool in_the_way(const BoundaryValueProblem& problem, const Search& search) {
   return parted(problem) || 2 * search.blocked() > search.starts();
 }
+constexpr const char* kMoreTolerance = "try a larger --tolerance, more --starts or another --seed";
+constexpr const char* kMoreMass =
+    "try more mass for the lightest coordinate, more --starts or another --seed";
 constexpr const char* kOtherCoordinates =
     "try more --starts, ends further from it, or other coordinates, such as a unit quaternion";
 
@@ -217,16 +220,23 @@ Failure explain_failure(const BoundaryValueProblem& problem,
   }
   const Path* nearest = search.nearest_discrete();
   if (nearest == nullptr) return no_discrete(problem, scales, search);
+  if (nearest->rung > 0) {
+    return {search.furthest(),
+            "discrete extremals were found where light coordinates were given more mass, but none "
+            "when it was taken away again (" +
+                tried + regularity(problem) + "): " + kMoreMass};
+  }
   const Knots knots = knots_of(*nearest, 1);
   const EndPoint end = end_point(problem, scales, start_unknowns(problem, knots.at(0)));
   const bool beyond = !joined && end.beyond_double;
   const Reason reason = beyond ? Reason::kBeyondDouble : search.furthest();
+  // Along a path the momenta of light coordinates grow at a rate of 1/sqrt(mass), and lose digits.
+  const char* advice = in_the_way(problem, search) ? kOtherCoordinates
+                       : search.has_light_masses() ? kMoreMass
+                                                   : kMoreTolerance;
   return {reason,
           fate(reason) + " (" + tried + "; of the one of least action, " + end.text +
-              regularity(problem) + "): " +
-              (in_the_way(problem, search)
-                   ? kOtherCoordinates
-                   : "try a larger --tolerance, more --starts or another --seed")};
+              regularity(problem) + "): " + advice};
 }
 
 }  // namespace carnot::internal

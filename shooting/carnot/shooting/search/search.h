@@ -51,7 +51,9 @@ class Search {
   [[nodiscard]] int blocked() const { return tally_.blocked; }
   // How far the best attempt came that did not become an extremal.
   [[nodiscard]] Reason furthest() const { return furthest_; }
-  // The discrete extremal of least action; null where there is none.
+  // Whether coordinates were given more mass at first (mass_ladder.h).
+  [[nodiscard]] bool has_light_masses() const { return ladder_.height() > 0; }
+  // The discrete extremal of least action, on the lowest rung; null where there is none.
   [[nodiscard]] const Path* nearest_discrete() const { return discrete_.least(); }
   // The least residual that a path was tightened to, relative to its momenta.
   [[nodiscard]] double least_residual() const { return least_residual_; }
