@@ -74,9 +74,10 @@ bool lightened(const MassLadder& ladder, int rung, Path& path) {
 }
 
 // The discrete extremal near `coarse` with twice as many intervals, one rung down: by Newton's
-// method or, where the coarse one is too far away for it, by relaxing once more.
+// method or, where the coarse one is too far away for it, step by step or by relaxing once more.
 std::optional<Path> finer(const MassLadder& ladder, const Path& coarse) {
   constexpr int kMostRelaxed = 128;
+  constexpr int kMostCarried = 256;
   const BoundaryValueProblem& problem = ladder.on(std::max(0, coarse.rung - 1));
   DiscreteNewtonOptions newton;
   newton.max_iterations = 40;
@@ -88,7 +89,12 @@ std::optional<Path> finer(const MassLadder& ladder, const Path& coarse) {
     path = halved(coarse);
     if (lightened(ladder, coarse.rung, path)) return path;
   }
-  if (!problem.dynamics.has_transcription()) {
+  // Of a car with a light body and light steering (a wheelbase of 2.7, inertias of 0.05 and 0.002)
+  // 4 of 25 random targets are not solved, and 9 without this; the searches take a tenth more time.
+  // It carries 6 of 10 paths on to 256 intervals, and 1 of 20 beyond, where it takes twice the
+  // time.
+  const bool carries = path.intervals > kMostRelaxed && path.intervals <= kMostCarried;
+  if (carries || !problem.dynamics.has_transcription()) {
     path = halved(coarse);
     return carried(problem, path) ? std::optional(path) : std::nullopt;
   }
