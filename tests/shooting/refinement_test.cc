@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include "carnot/load_scene.h"
+#include "carnot/make_dynamics.h"
 #include "carnot/shooting/path/discrete_newton.h"
 #include "carnot/shooting/path/relaxation.h"
 #include "carnot/shooting/search/starts.h"
@@ -15,8 +17,8 @@
 namespace carnot::internal::refinement_test {
 namespace {
 
-Path tight(const BoundaryValueProblem& problem) {
-  Start start = make_start(problem, 0, 2);
+Path tight(const BoundaryValueProblem& problem, int number = 2, int intervals = 32) {
+  Start start = make_start(problem, 0, number, intervals);
   relax(problem, start.relaxation, start.path);
   EXPECT_TRUE(tighten(problem, {}, start.path).converged);
   return start.path;
@@ -34,6 +36,31 @@ TEST(Refinement, HalvingKeepsCubics) {
   constexpr double kRoundOff = 1e-14;
   for (int i = 0; i <= 16; ++i) EXPECT_NEAR(fine.q[i], cubic(i / 16.0), kRoundOff);
   for (int i = 0; i < 16; ++i) EXPECT_NEAR(fine.lambda[i], 1 + 2 * (i + 0.5) / 16, kRoundOff);
+}
+
+// A car whose body and steering are light turns in layers that a grid of 128 intervals hardly
+// resolves. From there Newton's method alone does not lead to an extremal on 256, and relaxing
+// would be dear.
+TEST(Refinement, GoesOnStepByStepWhereNewtonDoesNot) {
+  const Dynamics car = make_dynamics(scene_from_text(R"(
+    coordinates x, y [length], theta, phi [angle]
+    kinetic = (x'^2 + y'^2 + 0.05 theta'^2 + 0.002 phi'^2) / 2
+    0 = x' sin(theta) - y' cos(theta)
+    0 = 2.7 theta' cos(phi) - (x' cos(theta) + y' sin(theta)) sin(phi)
+  )"));
+  const BoundaryValueProblem problem(car, {0, 0, 0, 0}, {1.07889, 2.94436, 0.06954, 0.24125});
+  const Path path = tight(problem, 9, 32);
+  RefinementOptions options;
+  options.enough = 0;  // to the end
+  options.max_intervals = 256;
+  const Refinement refined = refine(MassLadder(problem), options, path);
+  ASSERT_TRUE(refined.found);
+  ASSERT_EQ(refined.intervals, 256);
+  Path last = refined.finer.back();
+  const Path found = last;
+  ASSERT_TRUE(tighten(problem, {}, last).converged);
+  constexpr double kTightened = 1e-6;  // it was an extremal, and Newton's method stays
+  for (std::size_t i = 0; i < last.q.size(); ++i) EXPECT_NEAR(last.q[i], found.q[i], kTightened);
 }
 
 TEST(Refinement, ChangesFallByFour) {
