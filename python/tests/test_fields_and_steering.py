@@ -98,7 +98,11 @@ def test_distances_of_rows(steer):
 
 def test_alternatives_are_in_order(steer):
     ways = steer.alternatives([0, 0, 0], [0, 1, 0], 3)
-    assert sorted(way.distance for way in ways) == [way.distance for way in ways]
+    # Mirror images have the same action, and lengths that differ by round-off.
+    round_off = 4 * np.finfo(float).eps
+    distances = [way.distance for way in ways]
+    for less, more in zip(distances, distances[1:]):
+        assert more >= less * (1 - round_off)
     assert copy.deepcopy(ways) == ways
 
 

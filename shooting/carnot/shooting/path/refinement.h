@@ -12,7 +12,7 @@
 //
 // On a long way with drift a coarse grid is late by a part of a revolution. Where Newton's method
 // does not find the fine counterpart at once, it follows it while what its equations leave at the
-// start is taken back (homotopy.h).
+// start is taken back (homotopy.h). Layers that light coordinates make ask for the same.
 #pragma once
 
 #include <vector>
