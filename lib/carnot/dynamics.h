@@ -118,8 +118,8 @@ struct Dynamics {
     assert(std::ssize(q) == dof);
     return calls.chart != nullptr ? calls.chart(system.get(), q.data()) : 1.0;
   }
-  // p of the velocity, which is projected on the admissible ones first. Returns the relative
-  // violation before, NaN on failure.
+  // p of the velocity, which is projected on the admissible ones first. Returns how far that moved
+  // it, relative to it, NaN on failure (system/mass_norm.h).
   double momentum(double t,
                   std::span<const double> q,
                   std::span<double> q_dot,
