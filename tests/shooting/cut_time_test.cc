@@ -378,6 +378,8 @@ TEST(CutTime, SaysThatItWasStopped) {
   const CutTime stopped = cut_of(at, {0.4, 0.3, 0.9}, options);
   EXPECT_EQ(stopped.status, CutStatus::kInterrupted);
   EXPECT_FALSE(stopped.cut_time);
+  options.progress = [](double /*fraction*/) -> bool { throw std::runtime_error("enough"); };
+  EXPECT_THROW((void)cut_of(at, {0.4, 0.3, 0.9}, options), std::runtime_error);
   options = {};
   options.time_limit = 1e-9;
   const CutTime late = cut_of(at, {0.4, 0.3, 0.9}, options);

@@ -10,10 +10,10 @@
 #include "carnot/shooting/extremal/conjugate_times.h"
 #include "carnot/shooting/find_geodesics.h"
 #include "carnot/shooting/problem/scales.h"
+#include "carnot/shooting/problem/stop.h"
 #include "carnot/shooting/rays/meeting.h"
 #include "carnot/shooting/rays/pair_symmetry.h"
 #include "carnot/shooting/rays/ray.h"
-#include "carnot/shooting/search/deadline.h"
 #include "carnot/shooting/shoot/end_point.h"
 
 namespace carnot {
@@ -41,7 +41,7 @@ class CutSearch {
             const CutTimeOptions& options)
       : ray_(dynamics, from, std::move(p)),
         options_(options),
-        deadline_(options.time_limit),
+        stop_(options.time_limit, [this] { return !options_.progress || options_.progress(0); }),
         scale_(start_scales({dynamics, from, from}).radian) {
     horizon_ = options.max_time > 0 ? options.max_time * speed : natural_horizon();
   }
@@ -50,12 +50,13 @@ class CutSearch {
     find_conjugate_time();
     if (bracket()) {
       narrow();
-    } else if (!stopped_ && conjugate_) {
+    } else if (go_on() && conjugate_) {
       take_neighbour();
       if (!cut_) label_ = "conjugate";
       if (!cut_) cut_ = conjugate_;
     }
     if (partner_) label_ = name_of(symmetry_of_pair(ray_, *cut_, *partner_));
+    stop_.rethrow();
   }
 
   // In the times of the extremal as it was given.
@@ -72,10 +73,10 @@ class CutSearch {
       cut.partner_p0 = partner_->p;
       for (double& x : *cut.partner_p0) x *= speed;
     }
-    const bool known = message_.empty() && !stopped_;
-    cut.status = known ? CutStatus::kConverged : CutStatus::kNotConverged;
-    if (interrupted_) cut.status = CutStatus::kInterrupted;
-    if (interrupted_) cut.message = "interrupted";
+    if (stop_.late()) cut.message = "the time limit was up before the cut time was known";
+    cut.status = cut.message.empty() ? CutStatus::kConverged : CutStatus::kNotConverged;
+    if (stop_.asked()) cut.status = CutStatus::kInterrupted;
+    if (stop_.asked()) cut.message = "interrupted";
     return cut;
   }
 
@@ -103,14 +104,7 @@ class CutSearch {
     return turns > 0 ? std::max(longest, kTurns / turns) : longest;
   }
 
-  bool go_on() {
-    if (deadline_.passed() && !stopped_) {
-      stopped_ = true;
-      message_ = "the time limit was up before the cut time was known";
-    }
-    if (!stopped_ && options_.progress && !options_.progress(0)) stopped_ = interrupted_ = true;
-    return !stopped_;
-  }
+  bool go_on() { return !stop_.reached(); }
 
   // The first one up to the horizon, on stretches that double: to locate it costs in proportion to
   // the stretch.
@@ -149,7 +143,7 @@ class CutSearch {
     std::vector<Rival> found;
     const auto add = [&](const BoundaryValueProblem& to, const std::vector<double>& signs) {
       search.seed = options_.seed + static_cast<std::uint64_t>(searches_++);
-      search.time_limit = std::max(1e-3, deadline_.left());
+      search.time_limit = std::max(1e-3, stop_.left());
       for (const Geodesic& geodesic : find_geodesics(to, search).geodesics) {
         Rival rival{geodesic.p0, std::vector<double>(ray_.from().size(), 0.0), t, signs};
         for (std::size_t j = 0; j < geodesic.windings.size(); ++j) {
@@ -238,7 +232,7 @@ class CutSearch {
     }
     cut_.reset();
     partner_.reset();
-    if (!stopped_) message_ = "what is shorter could not be followed back to the cut time";
+    if (go_on()) message_ = "what is shorter could not be followed back to the cut time";
   }
 
   // Whether something is shorter than the ray at time t; the bracket is narrowed.
@@ -252,7 +246,7 @@ class CutSearch {
 
   Ray ray_;
   const CutTimeOptions& options_;
-  Deadline deadline_;
+  Stop stop_;
   double scale_;  // a natural length
   double horizon_ = 0;
   double low_ = 0;
@@ -265,8 +259,6 @@ class CutSearch {
   std::string label_ = "none-found";
   std::string message_;
   int searches_ = 0;
-  bool stopped_ = false;
-  bool interrupted_ = false;
 };
 
 // Whether the velocity at S z is S times the velocity at z, but for round-off.

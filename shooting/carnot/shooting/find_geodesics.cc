@@ -16,10 +16,10 @@
 #include "carnot/shooting/problem/natural_scales.h"
 #include "carnot/shooting/problem/origin.h"
 #include "carnot/shooting/problem/rescaled.h"
+#include "carnot/shooting/problem/stop.h"
 #include "carnot/shooting/problem/turn_rates.h"
 #include "carnot/shooting/problem/windings.h"
 #include "carnot/shooting/search/abnormal_search.h"
-#include "carnot/shooting/search/deadline.h"
 #include "carnot/shooting/search/failure.h"
 #include "carnot/shooting/search/limited_search.h"
 #include "carnot/shooting/search/search.h"
@@ -236,7 +236,7 @@ double longest_wanted(const std::vector<Extremal>& list, const GeodesicOptions& 
 GeodesicReport find_without_limits(const BoundaryValueProblem& asked,
                                    const GeodesicOptions& options) {
   const auto began = std::chrono::steady_clock::now();
-  const Deadline deadline(options.time_limit);
+  const Stop stop(options.time_limit);
   GeodesicReport report;
   const BoundaryValueProblem own = at_origin(asked);
   const NaturalScales scales = natural_scales(own);
@@ -254,7 +254,7 @@ GeodesicReport find_without_limits(const BoundaryValueProblem& asked,
     found.problems.back().to = image.to;
     if (least_length(found.problems.back(), rates) > longest_wanted(found.list, search)) continue;
     GeodesicOptions of_image = search;
-    of_image.time_limit = deadline.left();
+    of_image.time_limit = stop.left();
     search_image(scales, of_image, found);
     const bool stayed = !found.list.empty() && found.list.back().geodesic.action == 0;
     if (!found.finished || found.timed_out || (stayed && !options.all && options.count == 1)) break;
@@ -347,7 +347,7 @@ LimitedAnswer search_in_scales(const BoundaryValueProblem& problem,
 GeodesicReport find_with_limits(const BoundaryValueProblem& asked, const GeodesicOptions& options) {
   constexpr std::size_t kImages = 4;
   constexpr int kFewStarts = 12;
-  const Deadline deadline(options.time_limit);
+  const Stop stop(options.time_limit);
   const auto began = std::chrono::steady_clock::now();
   GeodesicReport report;
   std::vector<Image> images{{asked.to, {}}};
@@ -375,8 +375,8 @@ GeodesicReport find_with_limits(const BoundaryValueProblem& asked, const Geodesi
   report = find_without_limits(problem, few);
   const bool keeps = !report.geodesics.empty() && is_within_limits(asked, report.geodesics.front());
   if (few.starts != options.starts && report.status != GeodesicStatus::kInterrupted && keeps) {
-    all_starts.time_limit = deadline.left() > 0 ? deadline.left() : few.time_limit;
-    if (deadline.left() > 0) report = find_without_limits(problem, all_starts);
+    all_starts.time_limit = stop.left() > 0 ? stop.left() : few.time_limit;
+    if (stop.left() > 0) report = find_without_limits(problem, all_starts);
   }
   if (report.status == GeodesicStatus::kInterrupted) return report;
   // The nearest images, and all that an extremal without limits was found for.
@@ -397,14 +397,14 @@ GeodesicReport find_with_limits(const BoundaryValueProblem& asked, const Geodesi
   GeodesicOptions rest =
       in_scales(scales, problem, std::vector<double>(problem.from.size(), 0.0), options);
   bool finished = true;
-  bool timed_out = deadline.left() == 0;
+  bool timed_out = stop.left() == 0;
   for (const Image& image : images) {
     problem.to = image.to;
     std::vector<Geodesic> of_image;
     for (const Geodesic& geodesic : known) {
       if (geodesic.windings == image.windings) of_image.push_back(geodesic);
     }
-    rest.time_limit = deadline.left();
+    rest.time_limit = stop.left();
     LimitedAnswer answer = search_in_scales(problem, scales, rest, of_image);
     finished = answer.finished;
     timed_out = timed_out || answer.timed_out;

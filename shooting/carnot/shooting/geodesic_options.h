@@ -35,7 +35,9 @@ struct GeodesicOptions {
   // ended by it does not depend on it.
   double time_limit = std::numeric_limits<double>::infinity();
   long samples = 201;  // times in each trajectory; 0: none
-  Progress progress;   // fraction done; returns false to stop
+  // Told the fraction done, and returns false to stop. It is called often, and by the thread that
+  // searches only.
+  Progress progress;
 
   // Throws std::invalid_argument naming the option and what is accepted.
   void validate(const BoundaryValueProblem& problem) const;

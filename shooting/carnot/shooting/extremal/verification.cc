@@ -125,9 +125,11 @@ Reason check_knots(const BoundaryValueProblem& problem,
                    const Demand& demand,
                    long steps,
                    double tolerance,
+                   const Stop& stop,
                    Knots knots,
                    Extremal& extremal) {
   ShootingOptions options;
+  options.stop = stop;
   options.steps = steps;
   options.tolerance = kAsFarAsItGoes;
   const double growth = shoot(problem, options, knots).growth;
@@ -175,13 +177,19 @@ double allowed_error(const BoundaryValueProblem& problem, double tolerance) {
   return distance > 0 ? std::min(tolerance, kPart * distance) : tolerance;
 }
 
-Outcome verify(const BoundaryValueProblem& problem, Knots knots, long steps, double tolerance) {
+Outcome verify(const BoundaryValueProblem& problem,
+               Knots knots,
+               long steps,
+               double tolerance,
+               const Stop& stop) {
   const Demand demand = demand_of(problem, tolerance);
   steps = enough_steps(problem, knots, steps, tolerance);
   Extremal extremal;
   if (!check_single(problem, demand, steps, start_unknowns(problem, knots.at(0)), extremal)) {
+    if (stop.reached()) return {};
     const Reason reason =
-        check_knots(problem, demand, steps, tolerance, std::move(knots), extremal);
+        check_knots(problem, demand, steps, tolerance, stop, std::move(knots), extremal);
+    if (stop.reached()) return {};
     if (reason != Reason::kNone) return {std::nullopt, reason};
   }
   if (!measure(problem, 2 * steps, extremal)) return {std::nullopt, Reason::kFlowFailed};

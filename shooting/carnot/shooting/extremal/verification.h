@@ -11,6 +11,7 @@
 #include "carnot/shooting/boundary_value_problem.h"
 #include "carnot/shooting/extremal/conjugate_times.h"
 #include "carnot/shooting/geodesic.h"
+#include "carnot/shooting/problem/stop.h"
 #include "carnot/shooting/reason.h"
 #include "carnot/shooting/shoot/knots.h"
 
@@ -35,14 +36,18 @@ struct Extremal {
 // What became of an attempt: the extremal or, where there is none, how far the attempt came.
 struct Outcome {
   std::optional<Extremal> extremal;
-  Reason reason = Reason::kNone;  // kNone where there is an extremal
+  Reason reason = Reason::kNone;  // kNone where there is an extremal, or where it was stopped
 };
 
 // By how much the check may miss the target: near targets ask for digits relative to the distance.
 double allowed_error(const BoundaryValueProblem& problem, double tolerance);
 
 // `steps` is where the search for a step begins.
-Outcome verify(const BoundaryValueProblem& problem, Knots knots, long steps, double tolerance);
+Outcome verify(const BoundaryValueProblem& problem,
+               Knots knots,
+               long steps,
+               double tolerance,
+               const Stop& stop = {});
 
 // Sets endpoint_error and transversality_error or, for kKnots, the knot_defect, by flows of
 // `problem` from the knots.

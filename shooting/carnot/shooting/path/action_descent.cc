@@ -397,7 +397,7 @@ ActionDescent Reduction::run() {
   result.residual = residual(state_);
   constexpr int kMostRefused = 6;
   int refused = 0;
-  while (result.iterations < options_.max_iterations) {
+  while (result.iterations < options_.max_iterations && !options_.stop.reached()) {
     result.converged = result.residual <= options_.tolerance;
     if (result.converged) break;
     ++result.iterations;

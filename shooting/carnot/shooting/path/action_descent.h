@@ -29,6 +29,7 @@
 
 #include "carnot/shooting/boundary_value_problem.h"
 #include "carnot/shooting/path/path.h"
+#include "carnot/shooting/problem/stop.h"
 
 namespace carnot::internal {
 
@@ -38,6 +39,7 @@ struct ActionDescentOptions {
   double relaxation = 0;       // mu
   std::vector<double> centre;  // c, intervals x n; empty: zero
   std::vector<double> rest;    // the momentum to begin with where the path has none
+  Stop stop;                   // ends it where it is
   std::vector<double> sizes;   // S, of length n: what H_pp would be of controls on all coordinates
 };
 

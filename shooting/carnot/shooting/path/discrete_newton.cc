@@ -43,7 +43,7 @@ DiscreteNewton tighten(const BoundaryValueProblem& problem,
   result.residual = norm(residual);
   while (result.iterations < options.max_iterations && std::isfinite(result.residual)) {
     result.converged = result.residual <= options.tolerance * scale;
-    if (result.converged) break;
+    if (result.converged || options.stop.reached()) break;
     ++result.iterations;
     if (!matrix.factor()) break;
     direction = residual;

@@ -8,6 +8,7 @@
 
 #include "carnot/shooting/boundary_value_problem.h"
 #include "carnot/shooting/path/path.h"
+#include "carnot/shooting/problem/stop.h"
 
 namespace carnot::internal {
 
@@ -19,6 +20,7 @@ struct DiscreteNewtonOptions {
   // The equations are to leave this share of these numbers; null: zero.
   const std::vector<double>* residual = nullptr;
   double residual_share = 0;
+  Stop stop;  // ends it where it is
 };
 
 struct DiscreteNewton {

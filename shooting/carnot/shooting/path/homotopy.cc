@@ -28,6 +28,7 @@ bool follow(const HomotopyOptions& options,
   double last = 0;  // the length of the step that led there
   double step = options.first_step;
   for (int count = 0; count < options.most_steps && step >= kLeast; ++count) {
+    if (options.stop.reached()) break;
     if (count == options.patience && reached < options.hardly) break;
     const double next = std::min(1.0, reached + step);
     Path trial = path;

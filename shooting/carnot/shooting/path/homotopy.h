@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "carnot/shooting/path/path.h"
+#include "carnot/shooting/problem/stop.h"
 
 namespace carnot::internal {
 
@@ -13,6 +14,7 @@ struct HomotopyOptions {
   // After so many steps it is given up where not so much is done: it creeps.
   int patience = 20;
   double hardly = 0.015;
+  Stop stop;
 };
 
 // Carries `path` from the solution for s = 0 to one for s = 1. correct(s, trial) makes a solution

@@ -39,34 +39,39 @@ Path extrapolated(const Path& coarse, const Path& fine) {
 
 // Newton's method with what its equations leave at the start taken back step by step. It reaches
 // further: a long way, on which the coarse grid is late by a part of a revolution.
-bool carried(const BoundaryValueProblem& problem, Path& path) {
+bool carried(const BoundaryValueProblem& problem, const Stop& stop, Path& path) {
   constexpr double kOnTheWay = 1e-5;  // tolerance of the solutions on the way
   const std::vector<double> residual = residual_of(problem, path);
+  HomotopyOptions homotopy;
+  homotopy.stop = stop;
   const auto correct = [&](double s, Path& trial) {
     DiscreteNewtonOptions newton;
     newton.max_iterations = 8;
+    newton.stop = stop;
     newton.most_damped = 2;
     newton.residual = &residual;
     newton.residual_share = 1 - s;
     if (s < 1) newton.tolerance = kOnTheWay;
     return tighten(problem, newton, trial).converged;
   };
-  return follow({}, correct, path);
+  return follow(homotopy, correct, path);
 }
 
 // Takes the path of a coarser grid down from a rung: first there, on its own grid, then while the
 // masses fall. Of 40 random targets of a vehicle with light steering (beta from 1e-4 to 0.1) to
 // which all starts began at the top of the ladder, eight were not solved without this, and one with
 // it.
-bool lightened(const MassLadder& ladder, int rung, Path& path) {
+bool lightened(const MassLadder& ladder, int rung, const Stop& stop, Path& path) {
   DiscreteNewtonOptions newton;
   newton.max_iterations = 40;
+  newton.stop = stop;
   if (!tighten(ladder.on(rung), newton, path).converged) return false;
   newton.max_iterations = 10;
   newton.most_damped = 2;
   HomotopyOptions homotopy;
   homotopy.first_step = 0.25;
   homotopy.most_steps = 40;
+  homotopy.stop = stop;
   const auto correct = [&](double s, Path& trial) {
     return tighten(ladder.below(rung, s), newton, trial).converged;
   };
@@ -75,19 +80,20 @@ bool lightened(const MassLadder& ladder, int rung, Path& path) {
 
 // The discrete extremal near `coarse` with twice as many intervals, one rung down: by Newton's
 // method or, where the coarse one is too far away for it, step by step or by relaxing once more.
-std::optional<Path> finer(const MassLadder& ladder, const Path& coarse) {
+std::optional<Path> finer(const MassLadder& ladder, const Stop& stop, const Path& coarse) {
   constexpr int kMostRelaxed = 128;
   constexpr int kMostCarried = 256;
   const BoundaryValueProblem& problem = ladder.on(std::max(0, coarse.rung - 1));
   DiscreteNewtonOptions newton;
   newton.max_iterations = 40;
+  newton.stop = stop;
   const bool walled = in_one_chart(problem.dynamics, coarse);
   Path path = halved(coarse);
   if (walled && !in_one_chart(problem.dynamics, path)) return std::nullopt;
   if (tighten(problem, newton, path).converged) return path;
   if (coarse.rung > 0) {
     path = halved(coarse);
-    if (lightened(ladder, coarse.rung, path)) return path;
+    if (lightened(ladder, coarse.rung, stop, path)) return path;
   }
   // Of a car with a light body and light steering (a wheelbase of 2.7, inertias of 0.05 and 0.002)
   // 4 of 25 random targets are not solved, and 9 without this; the searches take a tenth more time.
@@ -96,9 +102,9 @@ std::optional<Path> finer(const MassLadder& ladder, const Path& coarse) {
   const bool carries = path.intervals > kMostRelaxed && path.intervals <= kMostCarried;
   if (carries || !problem.dynamics.has_transcription()) {
     path = halved(coarse);
-    return carried(problem, path) ? std::optional(path) : std::nullopt;
+    return carried(problem, stop, path) ? std::optional(path) : std::nullopt;
   }
-  if (path.intervals > kMostRelaxed) return std::nullopt;
+  if (path.intervals > kMostRelaxed || stop.reached()) return std::nullopt;
   RelaxationOptions relaxation;
   relaxation.penalty = 100;  // keeps the path near the constraints that it nearly satisfies
   path = halved(coarse);
@@ -154,8 +160,8 @@ Refinement refine(const MassLadder& ladder, const RefinementOptions& options, co
   std::optional<double> last_change;
   for (;;) {
     const Path& coarse = result.finer.empty() ? path : result.finer.back();
-    if (2 * coarse.intervals > options.max_intervals) break;
-    std::optional<Path> fine = finer(ladder, coarse);
+    if (2 * coarse.intervals > options.max_intervals || options.stop.reached()) break;
+    std::optional<Path> fine = finer(ladder, options.stop, coarse);
     if (!fine) break;
     if (coarse.rung > 0) {
       result.finer.push_back(std::move(*fine));

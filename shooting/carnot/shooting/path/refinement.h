@@ -19,12 +19,14 @@
 
 #include "carnot/shooting/path/path.h"
 #include "carnot/shooting/problem/mass_ladder.h"
+#include "carnot/shooting/problem/stop.h"
 
 namespace carnot::internal {
 
 struct RefinementOptions {
   double enough = 4e-2;  // change of the momenta, relative to the largest one, at which to stop
   int max_intervals = 1024;
+  Stop stop;  // ends it with the grids that there are
 };
 
 struct Refinement {

@@ -171,12 +171,12 @@ int DriftStarts::actuated() const {
   return std::clamp(kIntervals / intervals_, kFewest, kMost);
 }
 
-RelaxedStart DriftStarts::start(int i, int intervals) const {
-  if (i < scaled()) return scaled_start(scales_[i], intervals);
-  return actuated_start(i - scaled(), intervals);
+RelaxedStart DriftStarts::start(int i, int intervals, const Stop& stop) const {
+  if (i < scaled()) return scaled_start(scales_[i], intervals, stop);
+  return actuated_start(i - scaled(), intervals, stop);
 }
 
-RelaxedStart DriftStarts::scaled_start(double d, int intervals) const {
+RelaxedStart DriftStarts::scaled_start(double d, int intervals, const Stop& stop) const {
   constexpr double kOnTheWay = 1e-5;  // tolerance of the solutions on the way
   const int n = problem_.dynamics.dof;
   const double h = problem_.time / intervals;
@@ -203,7 +203,9 @@ RelaxedStart DriftStarts::scaled_start(double d, int intervals) const {
     result.residual = relative_residual(tightened, trial);
     return tightened.converged;
   };
-  result.found = follow({}, correct, result.path);
+  HomotopyOptions homotopy;
+  homotopy.stop = stop;
+  result.found = follow(homotopy, correct, result.path);
   return result;
 }
 
@@ -243,13 +245,14 @@ Path DriftStarts::random_path(int i, int intervals, double& relaxation) const {
   return path;
 }
 
-RelaxedStart DriftStarts::actuated_start(int i, int intervals) const {
+RelaxedStart DriftStarts::actuated_start(int i, int intervals, const Stop& stop) const {
   constexpr int kRounds = 3;  // of the method of multipliers
   ActionDescentOptions options;
   options.sizes = reach_.sizes;
   options.rest = reach_.rest;
   RelaxedStart result;
   result.path = random_path(i, intervals, options.relaxation);
+  options.stop = stop;
   options.max_iterations = 15;
   options.tolerance = 1e-3;
   for (int round = 0; round < kRounds; ++round) {

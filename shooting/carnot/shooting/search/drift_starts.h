@@ -20,6 +20,7 @@
 
 #include "carnot/shooting/boundary_value_problem.h"
 #include "carnot/shooting/problem/reach.h"
+#include "carnot/shooting/problem/stop.h"
 #include "carnot/shooting/search/relaxed_start.h"
 
 namespace carnot::internal {
@@ -30,7 +31,7 @@ class DriftStarts {
   DriftStarts(const BoundaryValueProblem& problem, std::uint64_t seed);
 
   // Start i of the sequence, a discrete extremal where it is found.
-  [[nodiscard]] RelaxedStart start(int i, int intervals) const;
+  [[nodiscard]] RelaxedStart start(int i, int intervals, const Stop& stop = {}) const;
   // So many intervals follow the drift: a multiple of 8.
   [[nodiscard]] int intervals() const { return intervals_; }
   // How many starts of the first family there are, the nearest first; they come before all others.
@@ -42,8 +43,8 @@ class DriftStarts {
  private:
   void set_action();
   void scan_scales();
-  [[nodiscard]] RelaxedStart scaled_start(double d, int intervals) const;
-  [[nodiscard]] RelaxedStart actuated_start(int i, int intervals) const;
+  [[nodiscard]] RelaxedStart scaled_start(double d, int intervals, const Stop& stop) const;
+  [[nodiscard]] RelaxedStart actuated_start(int i, int intervals, const Stop& stop) const;
   [[nodiscard]] Path random_path(int i, int intervals, double& relaxation) const;
 
   const BoundaryValueProblem& problem_;

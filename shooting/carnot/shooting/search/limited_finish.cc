@@ -261,7 +261,7 @@ Geodesic LimitedFinish::on_grid(const Candidate& candidate, double coarse_action
   return geodesic;
 }
 
-std::optional<LimitedExtremal> LimitedFinish::finish(Candidate candidate) const {
+std::optional<LimitedExtremal> LimitedFinish::finish(Candidate candidate, const Stop& stop) const {
   // mu on grids of 2, 4, ... times the first one. Contacts are told from the second of them in
   // nearly all cases.
   constexpr std::array kMu{3e-4, 1e-4, 1e-5, 1e-7};
@@ -269,6 +269,7 @@ std::optional<LimitedExtremal> LimitedFinish::finish(Candidate candidate) const 
   Candidate coarse;
   for (std::size_t level = 0; level < kMu.size(); ++level) {
     coarse = candidate;
+    if (stop.reached() && stop.asked()) return std::nullopt;
     if (!refine(candidate, kMu[level])) return std::nullopt;
     if (level == 0) continue;
     if (auto found = joined(candidate)) return found;

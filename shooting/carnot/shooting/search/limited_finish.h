@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "carnot/shooting/geodesic_options.h"
+#include "carnot/shooting/problem/stop.h"
 #include "carnot/shooting/search/limited_problem.h"
 #include "carnot/shooting/shoot/bound_arcs.h"
 
@@ -42,8 +43,10 @@ class LimitedFinish {
   LimitedFinish(const LimitedProblem& shared, const GeodesicOptions& options)
       : shared_(shared), options_(options) {}
 
-  // Nothing where the candidate has no counterpart on finer grids, or is beyond a limit.
-  [[nodiscard]] std::optional<LimitedExtremal> finish(Candidate candidate) const;
+  // Nothing where the candidate has no counterpart on finer grids, or is beyond a limit; or where
+  // the caller asked to stop.
+  [[nodiscard]] std::optional<LimitedExtremal> finish(Candidate candidate,
+                                                      const Stop& stop = {}) const;
 
   // The extremal whose pieces are near these, with the same contacts; its label is not known.
   // Nothing where there is none, or where it is beyond a limit or pulled by one.

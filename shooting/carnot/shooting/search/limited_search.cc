@@ -9,7 +9,7 @@
 #include "carnot/numerics/parallel.h"
 #include "carnot/shooting/extremal/ranking.h"
 #include "carnot/shooting/path/relaxation.h"
-#include "carnot/shooting/search/deadline.h"
+#include "carnot/shooting/problem/stop.h"
 #include "carnot/shooting/search/drift_starts.h"
 #include "carnot/shooting/search/limited_finish.h"
 #include "carnot/shooting/search/limited_problem.h"
@@ -48,7 +48,7 @@ class LimitedSearch {
   [[nodiscard]] std::size_t rivals(const std::vector<Candidate*>& open,
                                    const std::vector<Geodesic>& known) const;
   // Says in the answer where time was up before all of them were finished.
-  void finish_candidates(int threads, const Deadline& deadline, LimitedAnswer& answer);
+  void finish_candidates(int threads, LimitedAnswer& answer);
   [[nodiscard]] bool enough() const;
   [[nodiscard]] std::string infeasible() const;
 
@@ -59,6 +59,7 @@ class LimitedSearch {
   std::optional<DriftStarts> drift_;
   int intervals_ = 64;
   std::vector<Candidate> candidates_;
+  Stop stop_;
 };
 
 LimitedSearch::LimitedSearch(const BoundaryValueProblem& problem,
@@ -110,7 +111,7 @@ std::optional<Path> LimitedSearch::start(int i) const {
   // limits. Measured on a vehicle whose steering angle ends at 0.3: 22 of 24 starts converge.
   constexpr double kWallRate = 100;
   if (drift_) {
-    const RelaxedStart start = drift_->start(i, intervals_);
+    const RelaxedStart start = drift_->start(i, intervals_, stop_);
     return start.found ? std::optional(start.path) : std::nullopt;
   }
   Start start = make_start(shared_.unlimited, options_.seed, i, intervals_);
@@ -213,9 +214,7 @@ std::size_t LimitedSearch::rivals(const std::vector<Candidate*>& open,
 }
 
 // From the least on, until all rivals are finished and as many as are wanted.
-void LimitedSearch::finish_candidates(int threads,
-                                      const Deadline& deadline,
-                                      LimitedAnswer& answer) {
+void LimitedSearch::finish_candidates(int threads, LimitedAnswer& answer) {
   std::vector<Geodesic>& geodesics = answer.geodesics;
   constexpr std::size_t kMostTried = 24;
   constexpr std::size_t kAtOnce = 12;  // a second or two on one core
@@ -232,14 +231,11 @@ void LimitedSearch::finish_candidates(int threads,
   std::size_t next = 0;
   while (next < open.size() && (next < wanted || geodesics.size() < count)) {
     // The least ones are finished in any case: they are what the time was spent for.
-    if (next > 0 && deadline.passed()) {
-      answer.timed_out = true;
-      return;
-    }
+    if (stop_.reached() && (next > 0 || stop_.asked())) return;
     const std::size_t round = std::min({wanted, kAtOnce, open.size() - next});
     std::vector<std::optional<LimitedExtremal>> finished(round);
     parallel_for(static_cast<int>(round), threads, [&](int i) {
-      finished[i] = finish_.finish(*open[next + i]);
+      finished[i] = finish_.finish(*open[next + i], stop_);
       if (finished[i]) finished[i]->geodesic.hits = open[next + i]->hits;
     });
     for (std::size_t i = next; i < next + round; ++i) open[i]->tried = true;
@@ -274,17 +270,14 @@ LimitedAnswer LimitedSearch::run() {
   const auto lacks = [&] {
     return answer.geodesics.size() < static_cast<std::size_t>(options_.count);
   };
-  const Deadline deadline(options_.time_limit);
-  while (answer.starts < most && (!enough() || lacks())) {
-    answer.timed_out = deadline.passed();
-    if (answer.timed_out) break;
-    if (options_.progress && !options_.progress(static_cast<double>(answer.starts) / most)) {
-      answer.finished = false;
-      return answer;
-    }
+  stop_ = Stop(options_.time_limit, [&] {
+    return !options_.progress || options_.progress(static_cast<double>(answer.starts) / most);
+  });
+  while (answer.starts < most && (!enough() || lacks()) && !stop_.reached()) {
     const int count = std::min(kRound, most - answer.starts);
     std::vector<std::optional<Candidate>> found(count);
     parallel_for(count, threads, [&](int i) {
+      if (stop_.reached()) return;
       if (auto path = start(answer.starts + i)) found[i] = solve(std::move(*path));
     });
     answer.starts += count;
@@ -292,9 +285,12 @@ LimitedAnswer LimitedSearch::run() {
       answer.converged += candidate ? 1 : 0;
       note(std::move(candidate));
     }
-    if (enough()) finish_candidates(threads, deadline, answer);
+    if (enough()) finish_candidates(threads, answer);
   }
-  finish_candidates(threads, deadline, answer);
+  finish_candidates(threads, answer);
+  stop_.rethrow();
+  answer.timed_out = stop_.late();
+  answer.finished = !stop_.asked();
   rank(answer.geodesics);
   if (!options_.all && answer.geodesics.size() > static_cast<std::size_t>(options_.count)) {
     answer.geodesics.resize(options_.count);

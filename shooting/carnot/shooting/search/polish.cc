@@ -19,10 +19,11 @@ constexpr long kFewSteps = 16;  // of the method over the whole time, at least
 // Which of two failures came further is told by the order of Reason.
 void come_to(Reason& furthest, Reason reason) { furthest = std::max(furthest, reason); }
 
-RefinementOptions refinement_of(const Path& path) {
+RefinementOptions refinement_of(const Path& path, const Stop& stop) {
   constexpr int kDoublings = 8;  // of long ways, at least
   constexpr int kFeet = 4;       // times the first grid at the foot of the ladder, at least
   RefinementOptions refinement;
+  refinement.stop = stop;
   refinement.enough = 4e-2;
   refinement.max_intervals = std::max(refinement.max_intervals, kDoublings * path.intervals);
   refinement.max_intervals =
@@ -35,12 +36,14 @@ RefinementOptions refinement_of(const Path& path) {
 Outcome join(const BoundaryValueProblem& problem,
              const GeodesicOptions& options,
              const Refinement& refined,
-             int patience) {
+             int patience,
+             const Stop& stop) {
   constexpr double kMaxGrowth = 1e5;
   constexpr int kIntervalsPerSegment = 32;
   constexpr int kIntervalsPerStep = 8;
   constexpr int kAttempts = 4;
   ShootingOptions shooting;
+  shooting.stop = stop;
   shooting.minimiser = options.minimiser;
   shooting.max_growth = kMaxGrowth;
   const bool local = options.minimiser == "newton" || options.minimiser == "ceres";
@@ -49,10 +52,12 @@ Outcome join(const BoundaryValueProblem& problem,
   Reason furthest = Reason::kNone;
   int segments = std::max(kSegments, refined.intervals / kIntervalsPerSegment);
   for (int attempt = 0; attempt < kAttempts && segments <= refined.path.intervals; ++attempt) {
+    if (stop.reached()) break;
     Knots knots = knots_of(refined.path, segments);
     const Shooting joined = shoot(problem, shooting, knots);
     if (joined.converged) {
-      Outcome verified = verify(problem, std::move(knots), 2 * shooting.steps, options.tolerance);
+      Outcome verified =
+          verify(problem, std::move(knots), 2 * shooting.steps, options.tolerance, stop);
       if (!verified.extremal) come_to(verified.reason, furthest);
       return verified;
     }
@@ -96,8 +101,8 @@ Outcome shoot_from(const BoundaryValueProblem& problem,
   return verify(problem, knots_of(problem, x, 1, kFewSteps), 2 * kFewSteps, options.tolerance);
 }
 
-Refinement refine_to_polish(const MassLadder& ladder, const Path& path) {
-  return refine(ladder, refinement_of(path), path);
+Refinement refine_to_polish(const MassLadder& ladder, const Path& path, const Stop& stop) {
+  return refine(ladder, refinement_of(path, stop), path);
 }
 
 Outcome polish(const MassLadder& ladder, const GeodesicOptions& options, const Path& path) {
@@ -107,25 +112,27 @@ Outcome polish(const MassLadder& ladder, const GeodesicOptions& options, const P
 Outcome polish(const MassLadder& ladder,
                const GeodesicOptions& options,
                const Path& path,
-               const Refinement& refined) {
+               const Refinement& refined,
+               const Stop& stop) {
   // From a grid that is fine enough Newton's method takes two or three iterations. Where it takes
   // more a finer grid, which is cheaper than the flow, comes first.
   const BoundaryValueProblem& problem = ladder.on(0);
   constexpr std::array kPatience{4, 8, 12};
-  RefinementOptions refinement = refinement_of(path);
+  RefinementOptions refinement = refinement_of(path, stop);
   Outcome outcome{std::nullopt, Reason::kNotRefined};
   Refinement further;
   for (const int patience : kPatience) {
     const bool first = patience == kPatience.front();
     if (!first) further = refine(ladder, refinement, path);
     const Refinement& grid = first ? refined : further;
-    if (!grid.found) break;
-    Outcome joined = join(problem, options, grid, patience);
+    if (!grid.found || stop.reached()) break;
+    Outcome joined = join(problem, options, grid, patience, stop);
     come_to(outcome.reason, joined.reason);
     outcome.extremal = std::move(joined.extremal);
     if (outcome.extremal || !grid.settled) break;
     refinement.enough = 0.2 * grid.change;
   }
+  if (stop.reached() && !outcome.extremal) return {};
   // With large multipliers knots may join what needs none.
   if (!outcome.extremal || outcome.extremal->geodesic.verification == Verification::kKnots) {
     auto along = shoot_along(problem, options, path).extremal;
@@ -139,8 +146,10 @@ Outcome polish(const MassLadder& ladder,
 
 Outcome polish(const BoundaryValueProblem& problem,
                const GeodesicOptions& options,
-               const Knots& knots) {
+               const Knots& knots,
+               const Stop& stop) {
   ShootingOptions shooting;
+  shooting.stop = stop;
   std::vector<std::string> ways{options.minimiser};
   if (ways.front() == "newton") ways.emplace_back("ceres");  // which reaches further
   Reason furthest = Reason::kNone;
@@ -154,11 +163,12 @@ Outcome polish(const BoundaryValueProblem& problem,
         come_to(furthest, Reason::kNotJoined);
         continue;
       }
-      Outcome verified = verify(problem, std::move(joined), 2 * kFewSteps, options.tolerance);
+      Outcome verified = verify(problem, std::move(joined), 2 * kFewSteps, options.tolerance, stop);
       if (verified.extremal) return verified;
       come_to(furthest, verified.reason);
     }
   }
+  if (stop.reached()) return {};
   return {std::nullopt, furthest};
 }
 

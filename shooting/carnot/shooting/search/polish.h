@@ -6,12 +6,13 @@
 #include "carnot/shooting/geodesic_options.h"
 #include "carnot/shooting/path/path.h"
 #include "carnot/shooting/path/refinement.h"
+#include "carnot/shooting/problem/stop.h"
 #include "carnot/shooting/shoot/knots.h"
 
 namespace carnot::internal {
 
 // The first half of polishing: the path on grids that are fine enough for shooting.
-Refinement refine_to_polish(const MassLadder& ladder, const Path& path);
+Refinement refine_to_polish(const MassLadder& ladder, const Path& path, const Stop& stop = {});
 
 // The second half: joins the knots on the refined path (multiple_shooting.h). There are as many
 // knots, and as many steps, as the tangent flow asks for. Where that fails, refines further, and at
@@ -19,7 +20,8 @@ Refinement refine_to_polish(const MassLadder& ladder, const Path& path);
 Outcome polish(const MassLadder& ladder,
                const GeodesicOptions& options,
                const Path& path,
-               const Refinement& refined);
+               const Refinement& refined,
+               const Stop& stop = {});
 
 // Both halves.
 Outcome polish(const MassLadder& ladder, const GeodesicOptions& options, const Path& path);
@@ -27,7 +29,8 @@ Outcome polish(const MassLadder& ladder, const GeodesicOptions& options, const P
 // The same from knots that may be far from joined.
 Outcome polish(const BoundaryValueProblem& problem,
                const GeodesicOptions& options,
-               const Knots& knots);
+               const Knots& knots,
+               const Stop& stop = {});
 
 // Single shooting from the velocity at the start of a path, without its multipliers. This is for
 // paths that are abnormal as well as normal. A grid that only nearly satisfies the constraints

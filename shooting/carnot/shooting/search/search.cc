@@ -29,7 +29,7 @@ ExtremalList::Partners Search::partners_for(const BoundaryValueProblem& problem,
 Search::Search(const BoundaryValueProblem& problem, const GeodesicOptions& options)
     : problem_(problem),
       options_(options),
-      deadline_(options.time_limit),
+      stop_(options.time_limit, [this] { return !options_.progress || options_.progress(shown_); }),
       threads_(thread_count(options.threads)),
       near_(NearTarget::of(problem)),
       policy_(
@@ -54,12 +54,10 @@ bool Search::run() {
   constexpr int kMaxDescents = 4;  // sweeps below an extremal that is no minimum
   const bool by_paths = problem_.dynamics.has_transcription();
   const int sweeps = policy_.sweeps();
-  double shown = 0;  // does not fall where crossings raise the limit
   const auto goes_on = [&](double share) {
-    shown = std::max(shown, share);
-    return !options_.progress || options_.progress(shown);
+    shown_ = std::max(shown_, share);
+    return !stop_.reached();
   };
-  const auto is_late = [&] { return timed_out_ = deadline_.passed(); };
   if (near_) shoot_straight();
   int descents = 0;
   while (policy_.left(tally_) > 0) {
@@ -69,8 +67,7 @@ bool Search::run() {
       if (!found_lower && !descends_ && settled()) break;
     }
     if (extremals_.empty() && policy_.are_in_vain(tally_)) break;
-    if (is_late()) break;
-    if (!goes_on(policy_.share(tally_))) return false;
+    if (!goes_on(policy_.share(tally_))) break;
     if (by_paths && descends_ && descents < kMaxDescents) {
       if (!descend_round()) sweep_round(descents++);
     } else if (by_paths) {
@@ -83,23 +80,25 @@ bool Search::run() {
     }
   }
   for (int round = 0; round < sweeps; ++round) {
-    if (extremals_.empty() || !policy_.lacks(extremals_.size()) || is_late()) break;
-    if (!goes_on(0.5 + 0.5 * round / sweeps)) return false;
+    if (extremals_.empty() || !policy_.lacks(extremals_.size())) break;
+    if (!goes_on(0.5 + 0.5 * round / sweeps)) break;
     sweep_round(round);
   }
-  return true;
+  stop_.rethrow();
+  return !stop_.asked();
 }
 
 void Search::polish_guess() {
   tally_.starts = 1;
   for (const int segments : {kSegments, 1}) {
     const Knots knots = knots_of(problem_, options_.guess, segments, kFirstSteps);
-    const Outcome outcome = polish(problem_, options_, knots);
+    const Outcome outcome = polish(problem_, options_, knots, stop_);
     furthest_ = std::max(furthest_, outcome.reason);
     if (outcome.extremal) extremals_.add(*outcome.extremal);
     if (!extremals_.empty()) break;
   }
   tally_.converged = extremals_.empty() ? 0 : 1;
+  stop_.rethrow();
 }
 
 std::vector<int> Search::hits() const {
@@ -175,8 +174,8 @@ Search::Polished Search::absorb(const std::vector<RelaxedStart>& starts, const H
 Search::Refinements Search::refine_all(const std::vector<std::size_t>& indices, Polished& tally) {
   std::vector<Refinement> refinements(indices.size());
   parallel_for(static_cast<int>(indices.size()), threads_, [&](int i) {
-    if (!deadline_.passed()) {
-      refinements[i] = refine_to_polish(ladder_, discrete_[indices[i]].path);
+    if (!stop_.reached()) {
+      refinements[i] = refine_to_polish(ladder_, discrete_[indices[i]].path, stop_);
     }
   });
   Refinements refined;
@@ -208,8 +207,8 @@ void Search::polish_all(const Refinements& refined, Polished& tally) {
   std::vector<Outcome> polished(refined.size());
   parallel_for(static_cast<int>(refined.size()), threads_, [&](int i) {
     const auto& [index, refinement] = refined[i];
-    if (deadline_.passed()) return;
-    polished[i] = polish(ladder_, options_, discrete_[index].path, refinement);
+    if (stop_.reached()) return;
+    polished[i] = polish(ladder_, options_, discrete_[index].path, refinement, stop_);
   });
   for (std::size_t i = 0; i < refined.size(); ++i) {
     DiscreteExtremal& discrete = discrete_[refined[i].first];

@@ -14,7 +14,7 @@
 
 #include "carnot/shooting/path/refinement.h"
 #include "carnot/shooting/problem/mass_ladder.h"
-#include "carnot/shooting/search/deadline.h"
+#include "carnot/shooting/problem/stop.h"
 #include "carnot/shooting/search/discrete_list.h"
 #include "carnot/shooting/search/drift_starts.h"
 #include "carnot/shooting/search/relaxed_start.h"
@@ -46,7 +46,7 @@ class Search {
   [[nodiscard]] int starts() const { return tally_.starts; }
   [[nodiscard]] int converged() const { return tally_.converged; }
   // Whether the search ended since its time was up.
-  [[nodiscard]] bool timed_out() const { return timed_out_; }
+  [[nodiscard]] bool timed_out() const { return stop_.late(); }
   // How many starts ran into a singularity of the coordinates.
   [[nodiscard]] int blocked() const { return tally_.blocked; }
   // How far the best attempt came that did not become an extremal.
@@ -141,8 +141,8 @@ class Search {
 
   const BoundaryValueProblem& problem_;
   const GeodesicOptions& options_;
-  Deadline deadline_;
-  bool timed_out_ = false;
+  double shown_ = 0;  // of the search is done; does not fall where crossings raise the limit
+  Stop stop_;
   int threads_;
   std::optional<NearTarget> near_;    // where paths are relaxed to a target further away
   std::optional<DriftStarts> drift_;  // where the scene has no transcription of its own

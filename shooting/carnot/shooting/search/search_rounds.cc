@@ -82,7 +82,7 @@ void Search::relax_round(int count) {
   const RelaxedStartOptions options{options_.seed, intervals_of_round(tally_.drawn), stiffness_};
   std::vector<RelaxedStart> starts(count);
   parallel_for(count, threads_, [&](int i) {
-    if (deadline_.passed()) return;
+    if (stop_.reached()) return;
     starts[i] = relaxed_start(ladder_, near_, options, tally_.drawn + i);
   });
   tally_.drawn += count;
@@ -109,7 +109,7 @@ bool Search::cross_round(int count) {
   const int intervals = intervals_of_round(first);
   std::vector<RelaxedStart> starts(count);
   parallel_for(count, threads_, [&](int i) {
-    if (deadline_.passed()) return;
+    if (stop_.reached()) return;
     const int rung = ladder_.rung_of(first + i, intervals);
     Start start = make_start(ladder_.on(rung), options_.seed, first + i, intervals);
     start.path = crossing(parents, options_.seed, first + i, intervals);
@@ -126,7 +126,7 @@ bool Search::cross_round(int count) {
 void Search::drift_round(int count) {
   std::vector<RelaxedStart> starts(count);
   parallel_for(count, threads_, [&](int i) {
-    if (!deadline_.passed()) starts[i] = drift_->start(tally_.drawn + i, intervals_);
+    if (!stop_.reached()) starts[i] = drift_->start(tally_.drawn + i, intervals_, stop_);
   });
   tally_.drawn += count;
   const Polished polished = absorb(starts);
@@ -180,10 +180,10 @@ void Search::momentum_round(int count) {
   std::vector<Outcome> polished(count);
   parallel_for(count, threads_, [&](int i) {
     const std::vector<double> p0 = momentum_start(problem_, options_.seed, tally_.drawn + i);
-    if (p0.empty() || deadline_.passed()) return;
+    if (p0.empty() || stop_.reached()) return;
     const int segments = i % 2 == 0 ? kSegments : 1;
     const Knots knots = knots_of(problem_, p0, segments, kFirstSteps);
-    polished[i] = polish(problem_, options_, knots);
+    polished[i] = polish(problem_, options_, knots, stop_);
   });
   tally_.starts += count;
   tally_.drawn += count;
@@ -230,7 +230,7 @@ bool Search::shoot_below() {
   std::vector<std::optional<Extremal>> found(kShots);
   parallel_for(kShots, threads_, [&](int i) {
     std::vector<double> x = draw(problem_, sweep, i);
-    if (x.empty() || deadline_.passed()) return;
+    if (x.empty() || stop_.reached()) return;
     approach(problem_, kFirstSteps / 4, x);
     const std::vector<double> z = phase_point(problem_, x);
     const std::vector<double> p0(z.begin() + problem_.dynamics.dof, z.end());
@@ -271,7 +271,7 @@ void Search::sweep_round(int round) {
   std::vector<RelaxedStart> tightened(paths.size());
   parallel_for(static_cast<int>(paths.size()), threads_, [&](int i) {
     tightened[i].path = paths[i];
-    if (deadline_.passed()) return;
+    if (stop_.reached()) return;
     tightened[i].found = tighten(problem_, {}, tightened[i].path).converged;
   });
   absorb(tightened);
@@ -282,7 +282,7 @@ void Search::shoot_near_hits(const std::vector<Path>& paths,
                              const std::vector<RelaxedStart>& tightened) {
   std::vector<std::optional<Extremal>> extremals(paths.size());
   parallel_for(static_cast<int>(paths.size()), threads_, [&](int i) {
-    if (tightened[i].found || deadline_.passed()) return;
+    if (tightened[i].found || stop_.reached()) return;
     ShootingOptions shooting;
     shooting.steps = paths[i].intervals / 2;
     Knots knots = knots_of(paths[i], kSegments);

@@ -41,7 +41,8 @@ std::vector<Beginning> begin(const ShootingEquations& equations, const Knots& kn
 //
 // Ceres prints an error where its first evaluation fails, and where derivatives fail at a place
 // that it has stepped to. A library must not print. So the first evaluation is made before, and
-// derivatives that fail are told by `lost`, with zeros in their place.
+// derivatives that fail are told by `lost`, with zeros in their place. So is a search that is
+// stopped; its residuals are large.
 class Jump final : public ceres::CostFunction {
  public:
   Jump(const ShootingEquations& equations, int i, Beginning beginning, bool& lost)
@@ -68,7 +69,8 @@ class Jump final : public ceres::CostFunction {
                                     jacobians != nullptr ? jacobian.data() : nullptr)) {
       const bool flows = jacobians != nullptr &&
                          equations_.evaluate(i_, z.data(), z.data() + 2 * n, residuals, nullptr);
-      if (!flows) return false;
+      if (!flows && !equations_.stopped()) return false;
+      if (!flows) std::fill_n(residuals, num_residuals(), kStopped);
       lost_ = true;
       std::fill(jacobian.begin(), jacobian.end(), 0.0);
     }
@@ -86,6 +88,7 @@ class Jump final : public ceres::CostFunction {
   }
 
  private:
+  static constexpr double kStopped = 1e3;
   const ShootingEquations& equations_;
   int i_;
   Beginning beginning_;
@@ -159,7 +162,7 @@ Shooting shoot_with_ceres(const BoundaryValueProblem& problem,
                           const ShootingOptions& options,
                           Knots& knots) {
   const int n = knots.dof;
-  const ShootingEquations equations(problem, knots, options.steps);
+  const ShootingEquations equations(problem, knots, options.steps, options.stop);
   std::vector<Beginning> beginnings = begin(equations, knots);
   Shooting result;
   if (beginnings.empty()) return result;

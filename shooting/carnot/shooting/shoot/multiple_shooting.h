@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "carnot/shooting/problem/stop.h"
 #include "carnot/shooting/shoot/knots.h"
 
 namespace carnot::internal {
@@ -26,6 +27,7 @@ struct ShootingOptions {
   // iterations make the jumps hardly smaller, and ceres begins with full steps.
   bool near = true;
   double max_growth = 1e12;  // newton and ceres stop where a scaled tangent flow is larger
+  Stop stop;                 // ends it where it is, not converged
 };
 
 struct Shooting {

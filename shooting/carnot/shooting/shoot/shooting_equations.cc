@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "carnot/shooting/linear/round_off.h"
 
@@ -10,8 +11,13 @@ namespace carnot::internal {
 
 ShootingEquations::ShootingEquations(const BoundaryValueProblem& problem,
                                      const Knots& knots,
-                                     long steps)
-    : problem_(problem), segments_(knots.segments), dof_(knots.dof), steps_(steps) {
+                                     long steps,
+                                     Stop stop)
+    : problem_(problem),
+      segments_(knots.segments),
+      dof_(knots.dof),
+      steps_(steps),
+      stop_(std::move(stop)) {
   double q_scale = distance_between_ends(problem);
   double p_scale = 0;
   for (int i = 0; i <= segments_; ++i) {
@@ -29,6 +35,7 @@ ShootingEquations::ShootingEquations(const BoundaryValueProblem& problem,
 
 bool ShootingEquations::evaluate(
     int i, const double* z, const double* next, double* residual, double* jacobian) const {
+  if (stopped()) return false;
   const bool last = i + 1 == segments_;
   const int size = 2 * dof_;
   const StepPlan plan = knot_plan(problem_, segments_, i, steps_);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "carnot/shooting/problem/ends.h"
+#include "carnot/shooting/problem/stop.h"
 #include "carnot/shooting/shoot/knots.h"
 
 namespace carnot::internal {
@@ -16,7 +17,10 @@ namespace carnot::internal {
 class ShootingEquations {
  public:
   // `steps` of the method over the whole time. Keeps a reference to `problem`.
-  ShootingEquations(const BoundaryValueProblem& problem, const Knots& knots, long steps);
+  ShootingEquations(const BoundaryValueProblem& problem,
+                    const Knots& knots,
+                    long steps,
+                    Stop stop = {});
 
   [[nodiscard]] int segments() const { return segments_; }
   [[nodiscard]] int dof() const { return dof_; }
@@ -25,12 +29,15 @@ class ShootingEquations {
 
   // Residual of segment i between z (2n) and next (2n, unused for the last segment), and its
   // Jacobian with respect to z, residuals(i) x 2n row-major, unless null. The derivative with
-  // respect to `next` is -1 / scale(row) on the diagonal. Returns false when the flow fails.
+  // respect to `next` is -1 / scale(row) on the diagonal. Returns false when the flow fails, or
+  // when it is stopped.
   [[nodiscard]] bool evaluate(
       int i, const double* z, const double* next, double* residual, double* jacobian) const;
 
   // The largest derivative by an unknown in a Jacobian of segment i, in units of both scales.
   [[nodiscard]] double growth(int i, const double* jacobian) const;
+
+  [[nodiscard]] bool stopped() const { return stop_.reached(); }
 
   [[nodiscard]] double scale(int row) const { return scale_[row]; }
 
@@ -51,6 +58,7 @@ class ShootingEquations {
   int segments_;
   int dof_;
   long steps_;
+  Stop stop_;
   std::vector<double> scale_;
 };
 
