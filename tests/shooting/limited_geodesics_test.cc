@@ -94,6 +94,31 @@ TEST(LimitedGeodesics, AreAsBeforeWhereNoLimitIsReached) {
   EXPECT_TRUE(wide.limits.at(0).active.empty());
 }
 
+// A car whose steering is light turns it almost at once, and flows along such a path magnify what
+// they begin with a million times in a part of the time. Its pieces are joined from more, shorter
+// flows. The limit from C++ has no arcs, so its answer is that of the grid.
+TEST(LimitedGeodesics, JoinPiecesThatMagnify) {
+  const std::string car = R"(
+    coordinates x, y [length], theta, phi [angle]
+    kinetic = (x'^2 + y'^2 + 1.2 theta'^2 + 0.001 phi'^2) / 2
+    0 = x' sin(theta) - y' cos(theta)
+    0 = 2.7 theta' cos(phi) - (x' cos(theta) + y' sin(theta)) sin(phi)
+  )";
+  const std::vector<double> target{7.09371, 1.48975, 1.2027, -0.30944};
+  const BoundaryValueProblem problem(
+      test::from_text(car + "limit -0.6 < phi < 0.6\n"), {0, 0, 0, 0}, target);
+  BoundaryValueProblem direct(test::from_text(car), {0, 0, 0, 0}, target);
+  direct.limits = {make_limit<4>(
+      "steering", [](const auto& q) { return q[3]; }, -0.6, 0.6)};
+  const Geodesic geodesic = best(problem);
+  EXPECT_EQ(geodesic.verification, Verification::kKnots);
+  EXPECT_LE(geodesic.knot_defect, 1e-10);
+  expect_kept(problem, geodesic);
+  const Geodesic on_grid = best(direct);
+  EXPECT_EQ(on_grid.verification, Verification::kGrid);
+  EXPECT_NEAR(geodesic.action, on_grid.action, on_grid.grid_error);
+}
+
 TEST(LimitedGeodesics, DoNotDependOnThreads) {
   const BoundaryValueProblem problem = parking("limit -0.3 < phi - theta < 0.3\n");
   const GeodesicReport one = solve(problem, 2, 1);
@@ -385,7 +410,7 @@ TEST(BoundArcs, JoinQuadratically) {
   const InteriorPoint solved = interior_point(problem, walls, options, limited);
   ASSERT_TRUE(solved.converged);
   EXPECT_TRUE(solved.minimum);
-  auto pieces = pieces_of(problem, walls, options, limited, Contacts::kArcs);
+  auto pieces = pieces_of(problem, walls, options, limited, Contacts::kArcs, 8);
   ASSERT_TRUE(pieces);
   EXPECT_EQ(pieces->pieces.size(), 9U);
   ASSERT_TRUE(join_pieces(problem, walls, 64, *pieces));

@@ -81,12 +81,16 @@ std::optional<std::vector<Contact>> contacts_of(const Walls& walls,
 }
 
 // The segments of a piece from node `begin` to `end`; on an arc eta grows to that value.
-void fill_piece(
-    const Walls& walls, const LimitedPath& limited, int begin, int end, double eta, Piece& piece) {
-  constexpr int kSegments = 8;  // of the whole time
+void fill_piece(const Walls& walls,
+                const LimitedPath& limited,
+                int begin,
+                int end,
+                double eta,
+                int segments,
+                Piece& piece) {
   const Path& path = limited.path;
   const double share = static_cast<double>(end - begin) / path.intervals;
-  piece.segments = std::max(1, static_cast<int>(std::ceil(kSegments * share)));
+  piece.segments = std::max(1, static_cast<int>(std::ceil(segments * share)));
   piece.segments = std::min(piece.segments, std::max(1, end - begin));
   for (int i = 0; i < piece.segments; ++i) {
     const int node = begin + (end - begin) * i / piece.segments;
@@ -107,7 +111,8 @@ std::optional<BoundExtremal> pieces_of(const BoundaryValueProblem& problem,
                                        const Walls& walls,
                                        const InteriorPointOptions& options,
                                        const LimitedPath& limited,
-                                       Contacts as) {
+                                       Contacts as,
+                                       int segments) {
   const Path& path = limited.path;
   const double h = problem.time / path.intervals;
   const auto contacts = contacts_of(walls, options, limited, h);
@@ -116,7 +121,7 @@ std::optional<BoundExtremal> pieces_of(const BoundaryValueProblem& problem,
   HamiltonianTerms terms(problem.dynamics);
   int begin = 0;
   const auto add = [&](Piece piece, int end, double eta) {
-    fill_piece(walls, limited, begin, end, eta, piece);
+    fill_piece(walls, limited, begin, end, eta, segments, piece);
     piece.end = end * h;
     extremal.pieces.push_back(std::move(piece));
     begin = end;

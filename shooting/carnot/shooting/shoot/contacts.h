@@ -14,12 +14,14 @@ namespace carnot::internal {
 // wall by itself. That is how limits of second order are kept to.
 enum class Contacts { kByOrder, kArcs, kTouches, kPairs };
 
-// The pieces of a path on the grid, by where its multipliers exceed its slacks. Nothing where a
-// wall is met at the start of the path or together with another one.
+// The pieces of a path on the grid, by where its multipliers exceed its slacks. They consist of
+// about so many segments over the whole time. Nothing where a wall is met at the start of the path
+// or together with another one.
 std::optional<BoundExtremal> pieces_of(const BoundaryValueProblem& problem,
                                        const Walls& walls,
                                        const InteriorPointOptions& options,
                                        const LimitedPath& limited,
-                                       Contacts as);
+                                       Contacts as,
+                                       int segments);
 
 }  // namespace carnot::internal
