@@ -40,6 +40,25 @@ TEST(ShootingEquations, JacobianIsThatOfTheResidual) {
   }
 }
 
+// Where coordinates are light, a momentum that is small everywhere has a scale of its own; one that
+// vanishes has a hundredth of the largest. Elsewhere the largest is that of all.
+TEST(ShootingEquations, MomentaHaveScalesOfTheirOwn) {
+  const BoundaryValueProblem problem = test::vehicle({0, 0, 0, 0}, {2, 1, 0.5, 0.5});
+  Knots knots = knots_of(problem, kRoughP0, 2, 16);
+  const std::vector<double> largest{5, -0.25, 1, 0};
+  for (int i = 0; i <= 2; ++i) {
+    for (int j = 0; j < 4; ++j) knots.at(i)[4 + j] = largest[j] / (1 << i);
+  }
+  const ShootingEquations common(problem, knots, 16);
+  const ShootingEquations equations(problem, knots, 16, true);
+  const std::vector<double> scales{5, 0.25, 1, 0.05};
+  for (int j = 0; j < 4; ++j) {
+    EXPECT_EQ(equations.scale(4 + j), scales[j]);
+    EXPECT_EQ(common.scale(4 + j), 5);
+    EXPECT_EQ(equations.scale(j), equations.scale(0));
+  }
+}
+
 TEST(MultipleShooting, SegmentsAndMinimisersAgree) {
   const BoundaryValueProblem problem = test::vehicle({0, 0, 0, 0}, {2, 1, 0.5, 0.5});
   std::vector<std::vector<double>> found;

@@ -9,28 +9,28 @@
 
 namespace carnot::internal {
 
-ShootingEquations::ShootingEquations(const BoundaryValueProblem& problem,
-                                     const Knots& knots,
-                                     long steps,
-                                     Stop stop)
+ShootingEquations::ShootingEquations(
+    const BoundaryValueProblem& problem, const Knots& knots, long steps, bool light, Stop stop)
     : problem_(problem),
       segments_(knots.segments),
       dof_(knots.dof),
       steps_(steps),
       stop_(std::move(stop)) {
+  constexpr double kLeast = 0.01;  // of the largest momentum
   double q_scale = distance_between_ends(problem);
-  double p_scale = 0;
+  std::vector<double> own(dof_, 0.0);
   for (int i = 0; i <= segments_; ++i) {
     for (int j = 0; j < dof_; ++j) {
       q_scale = std::max(q_scale, std::abs(knots.at(i)[j] - knots.at(0)[j]));
-      p_scale = std::max(p_scale, std::abs(knots.at(i)[dof_ + j]));
+      own[j] = std::max(own[j], std::abs(knots.at(i)[dof_ + j]));
     }
   }
+  double p_scale = *std::max_element(own.begin(), own.end());
   // Where nothing moves any unit will do.
   if (q_scale < kRestRoundOff) q_scale = 1;
   if (p_scale < kRestRoundOff) p_scale = 1;
-  scale_.assign(2 * dof_, p_scale);
-  std::fill(scale_.begin(), scale_.begin() + dof_, q_scale);
+  scale_.assign(dof_, q_scale);
+  for (const double p : own) scale_.push_back(light ? std::max(p, kLeast * p_scale) : p_scale);
 }
 
 bool ShootingEquations::evaluate(

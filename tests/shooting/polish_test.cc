@@ -1,0 +1,42 @@
+// From discrete extremals to verified ones.
+#include "carnot/shooting/search/polish.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+
+#include "carnot/load_scene.h"
+#include "carnot/make_dynamics.h"
+#include "carnot/shooting/search/relaxed_start.h"
+#include "shooting/problems.h"
+
+namespace carnot::internal::polish_test {
+namespace {
+
+// Flows along a car whose body and steering are light magnify. Newton's method joins them where
+// they are short, but takes more iterations than where the grid resolves the path.
+TEST(Polish, JoinsShorterFlowsWhereTheyMagnify) {
+  const Dynamics car = make_dynamics(scene_from_text(R"(
+    coordinates x, y [length], theta, phi [angle]
+    kinetic = (x'^2 + y'^2 + 0.05 theta'^2 + 0.002 phi'^2) / 2
+    0 = x' sin(theta) - y' cos(theta)
+    0 = 2.7 theta' cos(phi) - (x' cos(theta) + y' sin(theta)) sin(phi)
+  )"));
+  const BoundaryValueProblem problem(car, {0, 0, 0, 0}, {2.8512, 3.92792, 0.51382, -0.3369});
+  const MassLadder ladder(problem);
+  RelaxedStartOptions options;
+  options.intervals = 16;
+  const RelaxedStart start = relaxed_start(ladder, std::nullopt, options, 0);
+  ASSERT_TRUE(start.found);
+  const Outcome outcome = polish(ladder, {}, start.path);
+  ASSERT_TRUE(outcome.extremal.has_value());
+  const Geodesic& geodesic = outcome.extremal->geodesic;
+  EXPECT_EQ(geodesic.verification, Verification::kKnots);
+  EXPECT_LE(geodesic.knot_defect, 1e-10);
+  EXPECT_LE(geodesic.constraint_error, 1e-12);
+  EXPECT_LE(std::abs(geodesic.energy_drift), 1e-10);
+}
+
+}  // namespace
+}  // namespace carnot::internal::polish_test
