@@ -40,8 +40,8 @@ TEST(ShootingEquations, JacobianIsThatOfTheResidual) {
   }
 }
 
-// Where coordinates are light, a momentum that is small everywhere has a scale of its own; one that
-// vanishes has a hundredth of the largest. Elsewhere the largest is that of all.
+// Where momenta have scales of their own, one that is small everywhere has a small one, and one
+// that vanishes has a hundredth of the largest. Elsewhere the largest is that of all.
 TEST(ShootingEquations, MomentaHaveScalesOfTheirOwn) {
   const BoundaryValueProblem problem = test::vehicle({0, 0, 0, 0}, {2, 1, 0.5, 0.5});
   Knots knots = knots_of(problem, kRoughP0, 2, 16);

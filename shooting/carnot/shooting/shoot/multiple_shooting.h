@@ -26,7 +26,7 @@ struct ShootingOptions {
   // Whether the knots should be nearly joined. Then newton and ceres give up where kTrials
   // iterations make the jumps hardly smaller, and ceres begins with full steps.
   bool near = true;
-  bool light = false;        // whether each momentum has a scale of its own (shooting_equations.h)
+  bool own_scales = false;   // whether each momentum has a scale of its own (shooting_equations.h)
   double max_growth = 1e12;  // newton and ceres stop where a scaled tangent flow is larger
   Stop stop;                 // ends it where it is, not converged
 };

@@ -74,7 +74,8 @@ Shooting shoot_with_newton(const BoundaryValueProblem& problem,
                            const ShootingOptions& options,
                            Knots& knots) {
   constexpr double kShortestStep = 1.0 / 32;
-  const ShootingEquations equations(problem, knots, options.steps, options.light, options.stop);
+  const ShootingEquations equations(
+      problem, knots, options.steps, options.own_scales, options.stop);
   Banded system(equations, knots);
   std::vector<double> residual;
   Shooting result;

@@ -10,7 +10,7 @@
 namespace carnot::internal {
 
 ShootingEquations::ShootingEquations(
-    const BoundaryValueProblem& problem, const Knots& knots, long steps, bool light, Stop stop)
+    const BoundaryValueProblem& problem, const Knots& knots, long steps, bool own_scales, Stop stop)
     : problem_(problem),
       segments_(knots.segments),
       dof_(knots.dof),
@@ -30,7 +30,7 @@ ShootingEquations::ShootingEquations(
   if (q_scale < kRestRoundOff) q_scale = 1;
   if (p_scale < kRestRoundOff) p_scale = 1;
   scale_.assign(dof_, q_scale);
-  for (const double p : own) scale_.push_back(light ? std::max(p, kLeast * p_scale) : p_scale);
+  for (const double p : own) scale_.push_back(own_scales ? std::max(p, kLeast * p_scale) : p_scale);
 }
 
 bool ShootingEquations::evaluate(

@@ -3,8 +3,8 @@
 // Unknowns are those of the start (ends.h: p(0) where no end is free) and the phase points at the
 // inner knots; segment i asks for flow(z_i) = z_{i+1}, the last one for q(T) = to, or p(T) = 0
 // where the target is free. Jacobians are tangent flows, exact for the discrete map. Residuals are
-// divided by the size of q, or p, along the path. Where coordinates are light each momentum has a
-// size of its own, for theirs are small.
+// divided by the size of q, or p, along the path; or each momentum by its own size, for that of a
+// light coordinate is small.
 #pragma once
 
 #include <vector>
@@ -21,7 +21,7 @@ class ShootingEquations {
   ShootingEquations(const BoundaryValueProblem& problem,
                     const Knots& knots,
                     long steps,
-                    bool light = false,
+                    bool own_scales = false,
                     Stop stop = {});
 
   [[nodiscard]] int segments() const { return segments_; }
