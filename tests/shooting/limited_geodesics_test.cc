@@ -94,9 +94,9 @@ TEST(LimitedGeodesics, AreAsBeforeWhereNoLimitIsReached) {
   EXPECT_TRUE(wide.limits.at(0).active.empty());
 }
 
-// A car whose steering is light turns it almost at once, and flows along such a path magnify what
-// they begin with a million times in a part of the time. Its pieces are joined from more, shorter
-// flows. The limit from C++ has no arcs, so its answer is that of the grid.
+// A car whose steering is light turns it almost at once, and flows along such a path magnify. Its
+// pieces are joined from more, shorter flows. The limit from C++ has no arcs, so its answer is that
+// of the grid.
 TEST(LimitedGeodesics, JoinPiecesThatMagnify) {
   const std::string car = R"(
     coordinates x, y [length], theta, phi [angle]

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <optional>
 
-#include "carnot/load_scene.h"
-#include "carnot/make_dynamics.h"
 #include "carnot/shooting/search/relaxed_start.h"
 #include "shooting/problems.h"
 
@@ -17,13 +15,7 @@ namespace {
 // Flows along a car whose body and steering are light magnify. Newton's method joins them where
 // they are short, but takes more iterations than where the grid resolves the path.
 TEST(Polish, JoinsShorterFlowsWhereTheyMagnify) {
-  const Dynamics car = make_dynamics(scene_from_text(R"(
-    coordinates x, y [length], theta, phi [angle]
-    kinetic = (x'^2 + y'^2 + 0.05 theta'^2 + 0.002 phi'^2) / 2
-    0 = x' sin(theta) - y' cos(theta)
-    0 = 2.7 theta' cos(phi) - (x' cos(theta) + y' sin(theta)) sin(phi)
-  )"));
-  const BoundaryValueProblem problem(car, {0, 0, 0, 0}, {2.8512, 3.92792, 0.51382, -0.3369});
+  const BoundaryValueProblem problem = test::light_car({2.8512, 3.92792, 0.51382, -0.3369});
   const MassLadder ladder(problem);
   RelaxedStartOptions options;
   options.intervals = 16;

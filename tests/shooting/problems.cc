@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "carnot/load_scene.h"
 #include "carnot/make_dynamics.h"
 #include "catalogue/scene_choice.h"
 
@@ -80,6 +81,16 @@ BoundaryValueProblem stiff_vehicle(std::vector<double> to) {
 
 BoundaryValueProblem light_steering(std::vector<double> to, double beta) {
   return {dynamics("vehicle", {{"beta", beta}}), {0, 0, 0, 0}, std::move(to)};
+}
+
+BoundaryValueProblem light_car(std::vector<double> to) {
+  const Dynamics car = make_dynamics(scene_from_text(R"(
+    coordinates x, y [length], theta, phi [angle]
+    kinetic = (x'^2 + y'^2 + 0.05 theta'^2 + 0.002 phi'^2) / 2
+    0 = x' sin(theta) - y' cos(theta)
+    0 = 2.7 theta' cos(phi) - (x' cos(theta) + y' sin(theta)) sin(phi)
+  )"));
+  return {car, {0, 0, 0, 0}, std::move(to)};
 }
 
 BoundaryValueProblem vehicle_cosine(std::vector<double> from, std::vector<double> to, double time) {

@@ -18,6 +18,9 @@ BoundaryValueProblem stiff_vehicle(std::vector<double> to);
 
 // alpha = length = 1, from the origin.
 BoundaryValueProblem light_steering(std::vector<double> to, double beta);
+// A car with a wheelbase of 2.7 whose body and steering are light, from the origin: inertias of
+// 0.05 and 0.002.
+BoundaryValueProblem light_car(std::vector<double> to);
 
 BoundaryValueProblem vehicle_cosine(std::vector<double> from, std::vector<double> to, double time);
 BoundaryValueProblem heisenberg_group(std::vector<double> to, double time = 1);  // from the origin

@@ -7,8 +7,6 @@
 #include <cmath>
 #include <vector>
 
-#include "carnot/load_scene.h"
-#include "carnot/make_dynamics.h"
 #include "carnot/shooting/path/discrete_newton.h"
 #include "carnot/shooting/path/relaxation.h"
 #include "carnot/shooting/search/starts.h"
@@ -42,13 +40,7 @@ TEST(Refinement, HalvingKeepsCubics) {
 // resolves. From there Newton's method alone does not lead to an extremal on 256, and relaxing
 // would be dear.
 TEST(Refinement, GoesOnStepByStepWhereNewtonDoesNot) {
-  const Dynamics car = make_dynamics(scene_from_text(R"(
-    coordinates x, y [length], theta, phi [angle]
-    kinetic = (x'^2 + y'^2 + 0.05 theta'^2 + 0.002 phi'^2) / 2
-    0 = x' sin(theta) - y' cos(theta)
-    0 = 2.7 theta' cos(phi) - (x' cos(theta) + y' sin(theta)) sin(phi)
-  )"));
-  const BoundaryValueProblem problem(car, {0, 0, 0, 0}, {1.07889, 2.94436, 0.06954, 0.24125});
+  const BoundaryValueProblem problem = test::light_car({1.07889, 2.94436, 0.06954, 0.24125});
   const Path path = tight(problem, 9, 32);
   RefinementOptions options;
   options.enough = 0;  // to the end
