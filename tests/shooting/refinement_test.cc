@@ -8,19 +8,11 @@
 #include <vector>
 
 #include "carnot/shooting/path/discrete_newton.h"
-#include "carnot/shooting/path/relaxation.h"
-#include "carnot/shooting/search/starts.h"
 #include "shooting/problems.h"
+#include "shooting/tight_path.h"
 
 namespace carnot::internal::refinement_test {
 namespace {
-
-Path tight(const BoundaryValueProblem& problem, int number = 2, int intervals = 32) {
-  Start start = make_start(problem, 0, number, intervals);
-  relax(problem, start.relaxation, start.path);
-  EXPECT_TRUE(tighten(problem, {}, start.path).converged);
-  return start.path;
-}
 
 TEST(Refinement, HalvingKeepsCubics) {
   Path path;
@@ -41,7 +33,7 @@ TEST(Refinement, HalvingKeepsCubics) {
 // would be dear.
 TEST(Refinement, GoesOnStepByStepWhereNewtonDoesNot) {
   const BoundaryValueProblem problem = test::light_car({1.07889, 2.94436, 0.06954, 0.24125});
-  const Path path = tight(problem, 9, 32);
+  const Path path = test::tight_path(problem, 9, 32);
   RefinementOptions options;
   options.enough = 0;  // to the end
   options.max_intervals = 256;
@@ -57,7 +49,7 @@ TEST(Refinement, GoesOnStepByStepWhereNewtonDoesNot) {
 
 TEST(Refinement, ChangesFallByFour) {
   const BoundaryValueProblem problem = test::sideways();
-  const Path coarse = tight(problem);
+  const Path coarse = test::tight_path(problem);
   double last = 0;
   for (const int intervals : {128, 256, 512}) {
     RefinementOptions options;
@@ -78,7 +70,7 @@ TEST(Refinement, ChangesFallByFour) {
 TEST(Refinement, ExtrapolatedPathsConvergeWithTheFourthOrder) {
   constexpr double kSecondOrder = 4;
   const BoundaryValueProblem problem = test::sideways();
-  const Path coarse = tight(problem);
+  const Path coarse = test::tight_path(problem);
   std::vector<Path> paths;
   for (const int intervals : {128, 256, 512}) {
     RefinementOptions options;
@@ -108,7 +100,7 @@ TEST(Refinement, ExtrapolationIsOfFourthOrder) {
   const BoundaryValueProblem problem = test::straight_ahead();
   RefinementOptions options;
   options.enough = 1e-2;
-  const Refinement refined = refine(MassLadder(problem), options, tight(problem));
+  const Refinement refined = refine(MassLadder(problem), options, test::tight_path(problem));
   ASSERT_TRUE(refined.settled);
   EXPECT_NEAR(refined.path.momentum(0)[0], 1, 1e-9);
 }

@@ -21,6 +21,7 @@
 #include "carnot/shooting/search/starts.h"
 #include "carnot/shooting/shoot/multiple_shooting.h"
 #include "shooting/problems.h"
+#include "shooting/tight_path.h"
 
 namespace carnot::internal::stop_test {
 namespace {
@@ -96,17 +97,9 @@ TEST(Stop, KeepsWhatItsCallerThrows) {
   EXPECT_NO_THROW(Stop().rethrow());
 }
 
-// A path of a vehicle, pulled tight on a coarse grid.
-Path tight(const BoundaryValueProblem& problem) {
-  Start start = make_start(problem, 0, 2, 32);
-  relax(problem, start.relaxation, start.path);
-  EXPECT_TRUE(tighten(problem, {}, start.path).converged);
-  return start.path;
-}
-
 TEST(Stop, EndsRefinementWithTheGridsThatThereAre) {
   const BoundaryValueProblem problem = test::sideways();
-  const Path path = tight(problem);
+  const Path path = test::tight_path(problem);
   RefinementOptions options;
   options.enough = 0;  // to the end
   int all = 0;
@@ -207,7 +200,7 @@ TEST(Stop, EndsEveryMinimiser) {
 
 TEST(Stop, LeavesNoReasonWherePolishingIsStopped) {
   const BoundaryValueProblem problem = test::sideways();
-  const Path path = tight(problem);
+  const Path path = test::tight_path(problem);
   const MassLadder ladder(problem);
   const Refinement refined = refine_to_polish(ladder, path);
   ASSERT_TRUE(polish(ladder, {}, path, refined).extremal.has_value());
