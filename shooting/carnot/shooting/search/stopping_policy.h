@@ -4,7 +4,8 @@
 // starts converged the more rivals it has, and nothing seems to be missed: extremals that were hit
 // once only say that there are others (Chao, Scand. J. Statist. 11, 1984). It ends somewhat sooner
 // where most starts converge, most of them to one extremal, and nothing comes near its action. A
-// search for more goes on to a limit.
+// search for more goes on to a limit. Where many starts were tried, every second round is one of
+// crossings, in both.
 #pragma once
 
 #include "carnot/shooting/geodesic_options.h"
