@@ -68,5 +68,27 @@ TEST(Starts, GrowWithTheTarget) {
   EXPECT_NEAR(extent(1e-3) / extent(1), 0.1, 1e-3);
 }
 
+// How far from the straight line a start goes in one coordinate.
+double wiggle(const BoundaryValueProblem& problem, int start, int coordinate) {
+  const Path path = make_start(problem, 0, start).path;
+  const double from = problem.from[coordinate];
+  const double to = problem.to[coordinate];
+  double largest = 0;
+  for (int i = 0; i <= path.intervals; ++i) {
+    const double line = from + i * (to - from) / path.intervals;
+    largest = std::max(largest, std::abs(path.configuration(i)[coordinate] - line));
+  }
+  return largest;
+}
+
+// The wiggle of start 2 grows with the distance, and that of the second cat is nearly twice as
+// long. Both wiggles of cats are between 1 rad and a full turn.
+TEST(Starts, TurnFarWhereEveryCoordinateIsAnAngle) {
+  const double cat = wiggle(test::falling_cat({0.8, 0.8, 0.8}), 2, 1);
+  EXPECT_NEAR(wiggle(test::falling_cat({1.6, 1.6, 1.6}), 2, 1) / cat, 2, 0.01);
+  const double vehicle = wiggle(test::vehicle({0, 0, 0, 0}, {40, 30, 0, 0}), 2, 2);
+  EXPECT_NEAR(wiggle(test::vehicle({0, 0, 0, 0}, {80, 60, 0, 0}), 2, 2), vehicle, 100 * kEpsilon);
+}
+
 }  // namespace
 }  // namespace carnot::internal::starts_test
