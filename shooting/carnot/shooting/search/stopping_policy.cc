@@ -50,7 +50,7 @@ constexpr int kMaxNear = 240;
 // near hits do not find: of 40 random targets of falling-cat and 18 of vehicle, trailer1 and
 // trailer2 with positions up to 15, 2411 extremals and not 1820, 1063 and not 697 of them below
 // twice the least action, in 1.10 of the time. Of 20 answers for hard targets of falling-cat 9 did
-// without the least action that is known, and 4 do with crossings.
+// without the least action that is known, and 2 do now.
 constexpr int kMinCrossed = 64;
 // With crossings the limit is so many times as high.
 constexpr int kWithCrossings = 2;
