@@ -76,13 +76,13 @@ BoundaryValueProblem at_start(const BoundaryValueProblem& problem,
 }
 
 // How far the wiggle of an angle may go, in radians. Where there are lengths, a path that turns far
-// on its way drives far astray: with 3 rad 28 of 240 targets of vehicle, trailer1 and trailer2 with
-// positions up to 15 are missed and 10 not solved, with 1 rad 5 and none. Where every coordinate is
-// an angle, what is far away is an angle, too, and a path may have to begin the wrong way round. Of
-// 1,200 answers for random targets of falling-cat 28 are missed where all wiggles keep to 1 rad, 18
-// of them without a warning: most starts lead to one extremal, and the search ends soon. With a
-// full turn for simple wiggles 12 are missed and 2 without a warning. With a full turn for all of
-// them 11 and 1, but of 24 seeds 16 find the hard target of the test, and not 21.
+// on its way drives far astray: with 3 rad 28 of 240 targets of vehicle, trailer1 and trailer2
+// whose coordinates go up to 15 are missed and 10 not solved, with 1 rad 5 and none. Where each
+// coordinate is an angle, what is far away is an angle, too, and a path may have to begin the wrong
+// way round. Of 1,200 answers for random targets of falling-cat 28 are missed where all wiggles
+// keep to 1 rad, 18 of them without a warning: most starts lead to one extremal, and the search
+// ends soon. With a full turn for simple wiggles 12 are missed and 2 without a warning. With a full
+// turn for all of them 11 and 1, but of 24 seeds 16 find the hard target of the test, and not 21.
 double largest_turn(const SceneInfo& info, int n, int modes) {
   constexpr double kSmall = 1;
   const auto is_angle = [](const Coordinate& coordinate) { return coordinate.period > 0; };

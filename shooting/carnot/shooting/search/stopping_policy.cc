@@ -48,7 +48,7 @@ constexpr int kMaxNear = 240;
 // in 1.76. Seven rounds of crossings for one of starts, where hits of both end a search alike, miss
 // 57 in the time without crossings. Where more than the best is wanted they add what starts and
 // near hits do not find: of 40 random targets of falling-cat and 18 of vehicle, trailer1 and
-// trailer2 with positions up to 15, 2411 extremals and not 1820, 1063 and not 697 of them below
+// trailer2 with coordinates up to 15, 2411 extremals and not 1820, 1063 and not 697 of them below
 // twice the least action, in 1.10 of the time. Of 20 answers for hard targets of falling-cat 9 did
 // without the least action that is known, and 2 do now.
 constexpr int kMinCrossed = 64;
