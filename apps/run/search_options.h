@@ -16,7 +16,7 @@ struct SearchOptions {
   std::string max_length;
   std::string starts;
   std::string tolerance;
-  std::string minimiser = "ceres";
+  std::string minimiser = GeodesicOptions{}.minimiser;
   std::string time_limit;
   bool mod_angles = false;
   AskedLimits asked;
