@@ -128,7 +128,8 @@ ceres::Solver::Options solver_options(const BoundaryValueProblem& problem,
   // Where the knots are nearly joined, steps are those of Newton's method. Measured on trailer2 to
   // targets 15 away: with a radius of 1e6 a shoot takes 2.9 steps in place of 2.3, more of them do
   // not arrive, and what is done about that takes a quarter of a search.
-  // Momenta along the rows of Dh move nothing: columns of zeros that need a diagonal, so a radius.
+  // Momenta along the rows of Dh move nothing: columns of zeros that need a diagonal. Ceres divides
+  // it by the radius, which is not large there.
   const bool degenerate = problem.dynamics.forced > 0;
   solver.initial_trust_region_radius = options.near && !degenerate ? 1e12 : 1e6;
   if (degenerate) solver.min_lm_diagonal = 1e-2;
