@@ -17,12 +17,12 @@
 //      |  complete   samples, conjugate times, label     extremal/classification.h
 //   a Geodesic
 //
-// Where many starts do not agree, crossings of what is known are relaxed in turn with them
-// (search/crossing.h). Two more ways lead in where the best extremal is no minimum, or where more
-// than the best is wanted: ways down from saddles (path/descent.h) and near hits of random momenta
-// (search/sweep.h). What they give is tightened and polished as well. Scenes with drift, and all
-// others that are no least-squares problem, come to discrete extremals by other starts
-// (search/drift_starts.h):
+// Where many starts do not agree, or more than the best is wanted, crossings of what is known are
+// relaxed in turn with them (search/crossing.h). Two more ways lead in where the best extremal is
+// no minimum, or where more than the best is wanted: ways down from saddles (path/descent.h) and
+// near hits of random momenta (search/sweep.h). What they give is tightened and polished as well.
+// Scenes with drift, and all others that are no least-squares problem, come to discrete extremals
+// by other starts (search/drift_starts.h):
 //
 //   drift at another speed             |  a random path, and fictitious controls
 //      |  carry    path/homotopy.h     |     |  reduce    path/action_descent.h
