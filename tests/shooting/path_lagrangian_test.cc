@@ -12,6 +12,7 @@
 #include "carnot/shooting/search/starts.h"
 #include "shooting/drift_problems.h"
 #include "shooting/problems.h"
+#include "shooting/tight_path.h"
 
 namespace carnot::internal::path_lagrangian_test {
 namespace {
@@ -87,10 +88,7 @@ TEST(PathLagrangian, BothTranscriptionsHaveTheSameExtremals) {
   const BoundaryValueProblem own = test::sideways();
   BoundaryValueProblem other = own;
   other.dynamics.transcription = nullptr;
-  Start start = make_start(own, 0, 2);
-  relax(own, start.relaxation, start.path);
-  Path& path = start.path;
-  ASSERT_TRUE(tighten(own, {}, path).converged);
+  Path path = test::tight_path(own);
   const int n = path.dof;
   const double h = own.time / path.intervals;
   Path phase = path;

@@ -33,13 +33,18 @@ TEST(Refinement, HalvingKeepsCubics) {
 // would be dear.
 TEST(Refinement, GoesOnStepByStepWhereNewtonDoesNot) {
   const BoundaryValueProblem problem = test::light_car({1.07889, 2.94436, 0.06954, 0.24125});
-  const Path path = test::tight_path(problem, 9, 32);
+  const Path path = test::tight_path(problem, 112, 64);
   RefinementOptions options;
   options.enough = 0;  // to the end
   options.max_intervals = 256;
   const Refinement refined = refine(MassLadder(problem), options, path);
   ASSERT_TRUE(refined.found);
   ASSERT_EQ(refined.intervals, 256);
+  ASSERT_EQ(refined.finer.size(), 2u);
+  Path alone = halved(refined.finer.front());
+  DiscreteNewtonOptions newton;
+  newton.max_iterations = 40;
+  EXPECT_FALSE(tighten(problem, newton, alone).converged);
   Path last = refined.finer.back();
   const Path found = last;
   ASSERT_TRUE(tighten(problem, {}, last).converged);

@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "carnot/shooting/path/discrete_newton.h"
-#include "carnot/shooting/path/relaxation.h"
+#include "carnot/shooting/search/relaxed_start.h"
 #include "carnot/shooting/search/starts.h"
 
 namespace carnot::test {
@@ -12,10 +11,10 @@ namespace carnot::test {
 inline internal::Path tight_path(const BoundaryValueProblem& problem,
                                  int number = 2,
                                  int intervals = 32) {
-  internal::Start start = internal::make_start(problem, 0, number, intervals);
-  (void)internal::relax(problem, start.relaxation, start.path);
-  EXPECT_TRUE(internal::tighten(problem, {}, start.path).converged);
-  return start.path;
+  const internal::Start start = internal::make_start(problem, 0, number, intervals);
+  internal::RelaxedStart tight = internal::relaxed(problem, start, 0);
+  EXPECT_TRUE(tight.found);
+  return tight.path;
 }
 
 }  // namespace carnot::test
