@@ -244,13 +244,13 @@ TEST(Geodesic, WithoutConstraints) {
   EXPECT_NEAR(report.geodesics[0].p0[1], 1 / std::sin(1.0), 1e-10);
 }
 
-// One of hundreds of extremals. Without crossings 3 seeds of 12 find it, none of these three; with
-// them 10 do, and these hit it some fifty times. Round-off decides which paths lead where.
+// One of hundreds of extremals. Without crossings 3 seeds of 12 find it, with them 22 of 24.
+// Round-off decides which paths lead where: each build finds it with other seeds.
 TEST(Geodesic, CrossingsFindTheLeastOfHundreds) {
   const BoundaryValueProblem problem =
       test::falling_cat({-2.6723620111680537, -2.8763280169473195, -2.7966511206744067});
   int found = 0;
-  for (const int seed : {5, 7, 9}) {
+  for (int seed = 0; seed < 9; ++seed) {
     GeodesicOptions options;
     options.seed = seed;
     const GeodesicReport report = find_geodesics(problem, options);
@@ -258,7 +258,7 @@ TEST(Geodesic, CrossingsFindTheLeastOfHundreds) {
     found += report.geodesics[0].action < 279.849 ? 1 : 0;
     EXPECT_GE(report.missed_estimate.value(), 1) << "it is not sure";
   }
-  EXPECT_GE(found, 2);
+  EXPECT_GE(found, 6);
 }
 
 // The least action begins the wrong way round, and two of three starts lead to another, at 44.62.
