@@ -128,24 +128,19 @@ Path wiggled_line(const BoundaryValueProblem& problem,
 //
 // The straight line violates the constraints, and with rho = 10 (unit / violation)^2 it costs half
 // the action of such a path to collapse to it. With a third of that rho, paths to near targets
-// collapse. What makes up for the violation are brackets, of order two at least: where the target
-// is further than one radian, a path that goes straight there, of size D, is no reason for a
-// stiffer penalty than S (D/S)^(1/2) is.
+// collapse.
 //
 // Paths to far targets do not collapse, and what is more than they need only makes the valleys
-// steeper that they have to follow. Time of default searches with at least 1, 2, 3 and 10 (the last
-// without that S (D/S)^(1/2)): 100 targets of vehicle with all coordinates up to 15, 55, 56, 70 and
-// 92 s, with one or two missed; 100 with angles up to a half turn, 6.6, 7.2, 9.5 and 15 s; 200 with
-// coordinates up to 3, 1.3, 1.3, 1.4 and 1.8 s. Of 1,200 answers for random targets of falling-cat,
-// which has hundreds of extremals, 27, 14, 11 and 12 are missed.
+// steeper that they have to follow. Default searches to 100 targets with positions up to 15 take
+// 7.3, 10.7 and 14.6 s with at least 1, 3 and 10 for vehicle; to 100 with all coordinates up to 15,
+// 70 s with 3 and 93 s with 10. Of 600 answers for falling-cat, which has hundreds of extremals, 11
+// miss the least action with 1, and 3 with 3; of 1,200, 11 with 3 and 12 with 10.
 double penalty_against_collapse(const StartScales& scales, double unit) {
   constexpr double kLeast = 3;
   constexpr double kCollapse = 10;
   const bool violates = scales.violation > kConstraintRoundOff * scales.distance;
   if (!violates) return kCollapse;
-  const bool far = scales.distance > scales.radian;
-  const double by_brackets = std::sqrt(scales.distance * scales.radian);
-  const double collapse = (far ? std::min(unit, by_brackets) : unit) / scales.violation;
+  const double collapse = unit / scales.violation;
   return std::max(kLeast, kCollapse * collapse * collapse);
 }
 
