@@ -8,8 +8,6 @@
 
 #include "carnot/shooting/path/discrete_newton.h"
 #include "carnot/shooting/path/drift.h"
-#include "carnot/shooting/path/relaxation.h"
-#include "carnot/shooting/search/starts.h"
 #include "shooting/drift_problems.h"
 #include "shooting/problems.h"
 #include "shooting/tight_path.h"
