@@ -1,6 +1,7 @@
 #include "carnot/shooting/path/discrete_equations.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -20,11 +21,10 @@ DiscreteEquations::DiscreteEquations(const BoundaryValueProblem& problem,
       free_to_(n_, -1),
       m_(2 * n_ + k_),
       unknowns_(m_),
-      middle_(n_),
-      velocity_(n_),
-      terms_(n_ + k_ + 1),
+      middles_(n_),
+      terms_(static_cast<std::size_t>(n_ + k_ + 1) * kLanes),
       by_middle_(terms_.size() * 2 * n_),
-      slopes_(2 * n_ * n_) {
+      slopes_(static_cast<std::size_t>(2 * n_ * n_) * kLanes) {
   for (int j = 0; j < n_; ++j) {
     if (problem.is_free_from(j)) free_from_[j] = first_++;
   }
@@ -41,24 +41,23 @@ double DiscreteEquations::evaluate(const Path& path,
   if (matrix != nullptr) matrix->clear();
   double largest = 0;
   lagrangian_.visit(path, matrix != nullptr, [&](int i, const PathLagrangian::Terms& terms) {
-    if (matrix != nullptr && weights.metric != 0) set_slopes(path, i);
     for (int j = 0; j < n_ && !dynamics_.has_transcription(); ++j) {
       largest = std::max(largest, std::abs(terms.x[n_ + j] - terms.x[j]));
     }
     for (int a = 0; a < 2 * n_; ++a) largest = std::max(largest, std::abs(terms.gradient[a]));
-    const bool plain = weights.hessian == 1 && weights.metric == 0;
-    if (i > 0 && i + 1 < intervals_ && (matrix == nullptr || plain)) {
+    if (i > 0 && i + 1 < intervals_ && (matrix == nullptr || weights.hessian == 1)) {
       add_between(i, terms, residual, matrix);
     } else {
-      add(i, terms, weights, residual, matrix);
+      add(i, terms, weights.hessian, residual, matrix);
     }
   });
+  if (matrix != nullptr && weights.metric != 0) add_metric(path, weights.metric, *matrix);
   return largest;
 }
 
 void DiscreteEquations::add(int i,
                             const PathLagrangian::Terms& terms,
-                            const Weights& weights,
+                            double weight_of_hessian,
                             std::vector<double>& residual,
                             BandedLu* matrix) {
   for (int a = 0; a < m_; ++a) unknowns_[a] = unknown(i, a);
@@ -70,14 +69,7 @@ void DiscreteEquations::add(int i,
       const int column = unknowns_[b];
       if (column < 0) continue;
       double entry = terms.hessian[a * m_ + b];
-      if (a < 2 * n_ && b < 2 * n_) {
-        entry *= weights.hessian;
-        if (weights.metric != 0) {
-          double sum = 0;
-          for (int r = 0; r < n_; ++r) sum += slopes_[r * 2 * n_ + a] * slopes_[r * 2 * n_ + b];
-          entry += weights.metric * h_ * sum;
-        }
-      }
+      if (a < 2 * n_ && b < 2 * n_) entry *= weight_of_hessian;
       (*matrix)(row, column) += entry;
     }
   }
@@ -105,20 +97,48 @@ void DiscreteEquations::add_between(int i,
   }
 }
 
+void DiscreteEquations::add_metric(const Path& path, double share, BandedLu& matrix) {
+  const int columns = 2 * n_;
+  for (int first = 0, count = 0; first < intervals_; first += count) {
+    count = set_slopes(path, first);
+    for (int a = 0; a < columns; ++a) {
+      for (int b = a; b < columns; ++b) {
+        std::array<double, kLanes> sums{};
+        for (int r = 0; r < n_; ++r) {
+          const double* const by_a = &slopes_[(r * columns + a) * kLanes];
+          const double* const by_b = &slopes_[(r * columns + b) * kLanes];
+          for (int l = 0; l < kLanes; ++l) sums[l] += by_a[l] * by_b[l];
+        }
+        for (int l = 0; l < count; ++l) {
+          const int row = unknown(first + l, a);
+          const int column = unknown(first + l, b);
+          if (row < 0 || column < 0) continue;
+          const double entry = share * h_ * sums[l];
+          matrix(row, column) += entry;
+          if (a != b) matrix(column, row) += entry;
+        }
+      }
+    }
+  }
+}
+
 void DiscreteEquations::metric_product(const Path& path,
                                        const std::vector<double>& x,
                                        std::vector<double>& product) {
   product.assign(size(), 0.0);
-  for (int i = 0; i < intervals_; ++i) {
-    set_slopes(path, i);
-    for (int r = 0; r < n_; ++r) {
-      const double* row = &slopes_[r * 2 * n_];
-      double sum = 0;
-      for (int a = 0; a < 2 * n_; ++a) {
-        if (const int at = unknown(i, a); at >= 0) sum += row[a] * x[at];
-      }
-      for (int a = 0; a < 2 * n_; ++a) {
-        if (const int at = unknown(i, a); at >= 0) product[at] += h_ * sum * row[a];
+  for (int first = 0, count = 0; first < intervals_; first += count) {
+    count = set_slopes(path, first);
+    for (int l = 0; l < count; ++l) {
+      for (int r = 0; r < n_; ++r) {
+        const double* const row = &slopes_[r * 2 * n_ * kLanes + l];
+        double sum = 0;
+        for (int a = 0; a < 2 * n_; ++a) {
+          if (const int at = unknown(first + l, a); at >= 0) sum += row[a * kLanes] * x[at];
+        }
+        for (int a = 0; a < 2 * n_; ++a) {
+          const int at = unknown(first + l, a);
+          if (at >= 0) product[at] += h_ * sum * row[a * kLanes];
+        }
       }
     }
   }
@@ -143,22 +163,25 @@ void DiscreteEquations::move(const Path& from,
   }
 }
 
-void DiscreteEquations::set_slopes(const Path& path, int i) {
-  for (int j = 0; j < n_; ++j) {
-    middle_[j] = 0.5 * (path.configuration(i)[j] + path.configuration(i + 1)[j]);
-    velocity_[j] = (path.configuration(i + 1)[j] - path.configuration(i)[j]) / h_;
-  }
-  if (!dynamics_.midpoint(middle_, velocity_, terms_, by_middle_)) {
+int DiscreteEquations::set_slopes(const Path& path, int first) {
+  const int count = std::min(kLanes, intervals_ - first);
+  middles_.set(path.configuration(first), count, h_);
+  if (!dynamics_.midpoints(middles_.q(), middles_.v(), terms_, by_middle_)) {
     std::fill(slopes_.begin(), slopes_.end(), std::numeric_limits<double>::quiet_NaN());
-    return;
+    return count;
   }
+  const double per_h = 1 / h_;
   for (int r = 0; r < n_; ++r) {
-    const double* row = &by_middle_[r * 2 * n_];
-    for (int j = 0; j < n_; ++j) {
-      slopes_[r * 2 * n_ + j] = 0.5 * row[j] - row[n_ + j] / h_;
-      slopes_[r * 2 * n_ + n_ + j] = 0.5 * row[j] + row[n_ + j] / h_;
+    const double* const by_q = &by_middle_[r * 2 * n_ * kLanes];
+    const double* const by_v = by_q + n_ * kLanes;
+    double* const left = &slopes_[r * 2 * n_ * kLanes];
+    double* const right = left + n_ * kLanes;
+    for (int j = 0; j < n_ * kLanes; ++j) {
+      left[j] = 0.5 * by_q[j] - per_h * by_v[j];
+      right[j] = 0.5 * by_q[j] + per_h * by_v[j];
     }
   }
+  return count;
 }
 
 }  // namespace carnot::internal

@@ -15,6 +15,7 @@
 
 #include "carnot/shooting/boundary_value_problem.h"
 #include "carnot/shooting/linear/banded_lu.h"
+#include "carnot/shooting/path/middles.h"
 #include "carnot/shooting/path/path.h"
 #include "carnot/shooting/path/path_lagrangian.h"
 
@@ -51,12 +52,16 @@ class DiscreteEquations {
                   std::vector<double>& residual,
                   BandedLu* matrix,
                   const Weights& weights = {1, 0});
+  // Adds share * B to the matrix; NaN where the terms cannot be evaluated.
+  void add_metric(const Path& path, double share, BandedLu& matrix);
   // B x, with zeros for the multipliers. The result is NaN where the terms cannot be evaluated.
   void metric_product(const Path& path, const std::vector<double>& x, std::vector<double>& product);
   // path - step * direction.
   void move(const Path& from, const std::vector<double>& direction, double step, Path& to) const;
 
  private:
+  static constexpr int kLanes = Middles::kLanes;
+
   [[nodiscard]] int band() const { return 2 * n_ + k_ - 1; }
   // Number of multipliers and of coordinates of inner nodes.
   [[nodiscard]] int inner() const { return intervals_ * k_ + (intervals_ - 1) * n_; }
@@ -71,15 +76,15 @@ class DiscreteEquations {
   // nothing is weighed, with less effort.
   void add(int i,
            const PathLagrangian::Terms& terms,
-           const Weights& weights,
+           double weight_of_hessian,
            std::vector<double>& residual,
            BandedLu* matrix);
   void add_between(int i,
                    const PathLagrangian::Terms& terms,
                    std::vector<double>& residual,
                    BandedLu* matrix) const;
-  // Sets slopes_, n x 2n: dr of interval i by both nodes.
-  void set_slopes(const Path& path, int i);
+  // Sets slopes_: dr of intervals side by side from `first` on. Returns of how many.
+  int set_slopes(const Path& path, int first);
 
   const Dynamics& dynamics_;
   PathLagrangian lagrangian_;
@@ -93,8 +98,9 @@ class DiscreteEquations {
   std::vector<int> free_to_;
   int m_;
   std::vector<int> unknowns_;  // of the arguments of one interval
-  std::vector<double> middle_;
-  std::vector<double> velocity_;
+  Middles middles_;
+  // Of Middles::kLanes intervals side by side: terms, their derivatives by the middle, and those of
+  // r by both nodes, n x 2n.
   std::vector<double> terms_;
   std::vector<double> by_middle_;
   std::vector<double> slopes_;

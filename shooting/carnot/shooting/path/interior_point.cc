@@ -52,7 +52,7 @@ class Method {
   void set_walls();
   void start();
   // Everything but the complementarity; the residual of the equations of the path in `residual_`.
-  double evaluate(bool with_matrix, double metric = 0);
+  double evaluate(bool with_matrix);
   [[nodiscard]] double complementarity() const;
   void add_walls();
   void eliminate(const std::vector<double>& direction);
@@ -107,9 +107,8 @@ void Method::start() {
   }
 }
 
-double Method::evaluate(bool with_matrix, double metric) {
-  scale_ =
-      equations_.evaluate(limited_.path, residual_, with_matrix ? &matrix_ : nullptr, {1, metric});
+double Method::evaluate(bool with_matrix) {
+  scale_ = equations_.evaluate(limited_.path, residual_, with_matrix ? &matrix_ : nullptr);
   double worst = 0;
   for (int node = 0; node < nodes_; ++node) {
     if (!moves(node)) continue;
@@ -259,9 +258,10 @@ void Method::assemble() {
   evaluate(true);
   add_walls();
   if (!problem_.dynamics.has_transcription()) return;
-  for (double added = kFirst; added <= kLast && !has_right_inertia(); added *= kFactor) {
-    evaluate(true, added);
-    add_walls();
+  double added = 0;
+  for (double next = kFirst; next <= kLast && !has_right_inertia(); next *= kFactor) {
+    equations_.add_metric(limited_.path, next - added, matrix_);
+    added = next;
   }
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "carnot/shooting/linear/chain_least_squares.h"
+#include "carnot/shooting/path/middles.h"
 #include "carnot/shooting/problem/walls.h"
 
 namespace carnot::internal {
@@ -28,36 +29,8 @@ struct Transcription {
   [[nodiscard]] int residuals() const { return terms() + walls.size(); }
 };
 
-constexpr int kLanes = Dynamics::kMidpointLanes;
+constexpr int kLanes = Middles::kLanes;
 static_assert(kLanes == kChainLanes);
-
-// The middles of kLanes intervals side by side, and their velocities. Where there are fewer, the
-// last one stands for the rest.
-class Middles {
- public:
-  explicit Middles(int n) : n_(n), q_(static_cast<std::size_t>(n) * kLanes), v_(q_.size()) {}
-
-  // Of `count` intervals of length h from the node q on.
-  void set(const double* q, int count, double h) {
-    const double per_h = 1 / h;
-    for (int l = 0; l < kLanes; ++l) {
-      const double* left = q + std::min(l, count - 1) * n_;
-      const double* right = left + n_;
-      for (int j = 0; j < n_; ++j) {
-        q_[j * kLanes + l] = 0.5 * (left[j] + right[j]);
-        v_[j * kLanes + l] = (right[j] - left[j]) * per_h;
-      }
-    }
-  }
-
-  [[nodiscard]] const std::vector<double>& q() const { return q_; }
-  [[nodiscard]] const std::vector<double>& v() const { return v_; }
-
- private:
-  int n_;
-  std::vector<double> q_;
-  std::vector<double> v_;
-};
 
 // Residuals sqrt(h) r, sqrt(h rho) (G v - lambda / rho) and, with a potential, sqrt(2 h (c - V)) of
 // kLanes intervals side by side; keeps room for what it needs on the way.
