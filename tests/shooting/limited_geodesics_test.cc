@@ -11,6 +11,9 @@
 #include "carnot/shooting/find_geodesics.h"
 #include "carnot/shooting/path/interior_point.h"
 #include "carnot/shooting/path/refinement.h"
+#include "carnot/shooting/search/limited_finish.h"
+#include "carnot/shooting/search/limited_problem.h"
+#include "carnot/shooting/search/starts.h"
 #include "carnot/shooting/shoot/bound_arcs.h"
 #include "carnot/shooting/shoot/bound_survey.h"
 #include "carnot/shooting/shoot/contacts.h"
@@ -117,6 +120,72 @@ TEST(LimitedGeodesics, JoinPiecesThatMagnify) {
   const Geodesic on_grid = best(direct);
   EXPECT_EQ(on_grid.verification, Verification::kGrid);
   EXPECT_NEAR(geodesic.action, on_grid.action, on_grid.grid_error);
+}
+
+// The more a coordinate weighs, the more action it takes: candidates lose some on each rung. At the
+// foot they are on a grid that resolves their layers, and extremals of the problem itself.
+TEST(LimitedGeodesics, GoDownTheLadderOfMasses) {
+  constexpr int kIntervals = 64;
+  constexpr double kBeta = 1e-3;
+  BoundaryValueProblem problem = test::light_steering({1, 1, 0.5, 0.2}, kBeta);
+  problem.limits = {make_limit<4>(
+      "steering", [](const auto& q) { return q[3] - q[2]; }, -0.6, 0.6)};
+  const LimitedProblem shared(problem, {});
+  const LimitedFinish finish(shared, {});
+  const int rung = shared.ladder.rung_for(kIntervals);
+  ASSERT_GT(rung, 0);
+  Candidate candidate;
+  candidate.limited.path = make_start(problem, 0, 0, kIntervals).path;
+  candidate.limited.path.lambda.assign(2 * kIntervals, 0.0);
+  candidate.limited.path.rung = rung;
+  InteriorPointOptions interior = shared.interior;
+  interior.last_mu = kFirstGridMu;
+  const BoundaryValueProblem& top = shared.ladder.on(rung);
+  ASSERT_TRUE(interior_point(top, shared.walls, interior, candidate.limited).converged);
+  candidate.action = discrete_action(top.dynamics, 1.0 / kIntervals, candidate.limited.path);
+  for (int below = rung - 1; below >= 0; --below) {
+    const double before = candidate.action;
+    ASSERT_TRUE(finish.refine(candidate, kFirstGridMu)) << below;
+    EXPECT_EQ(candidate.limited.path.rung, below);
+    EXPECT_LT(candidate.action, before);
+  }
+  EXPECT_EQ(candidate.halvings, rung);
+  EXPECT_EQ(candidate.limited.path.intervals, kIntervals << rung);
+  LimitedPath again = candidate.limited;
+  interior.first_mu = interior.last_mu;
+  const InteriorPoint solved = interior_point(problem, shared.walls, interior, again);
+  EXPECT_TRUE(solved.converged);
+  EXPECT_EQ(solved.iterations, 0);
+}
+
+// Where steering is light starts take many ways, and lead to one geodesic.
+TEST(LimitedGeodesics, WithLightSteeringAgreeForSeeds) {
+  constexpr double kSame = 1e-8;
+  for (const std::vector<double>& to :
+       {std::vector<double>{1, 1, 0.5, 0.2}, {-1, 0.5, 0.2, 0.3}, {0, 1, 0, 0}}) {
+    const BoundaryValueProblem problem(test::from_text(R"(
+      coordinates x, y [length], theta, phi [angle]
+      kinetic = (x'^2 + y'^2 + theta'^2 + 0.01 phi'^2) / 2
+      0 = x' sin(theta) - y' cos(theta)
+      0 = theta' cos(phi) - (x' cos(theta) + y' sin(theta)) sin(phi)
+      limit -0.6 < phi < 0.6
+    )"),
+                                       {0, 0, 0, 0},
+                                       to);
+    std::vector<double> actions;
+    for (const std::uint64_t seed : {0, 1, 2}) {
+      GeodesicOptions options;
+      options.seed = seed;
+      const GeodesicReport report = find_geodesics(problem, options);
+      ASSERT_FALSE(report.geodesics.empty()) << report.message;
+      const Geodesic& geodesic = report.geodesics.front();
+      EXPECT_EQ(geodesic.verification, Verification::kKnots);
+      expect_kept(problem, geodesic);
+      actions.push_back(geodesic.action);
+    }
+    EXPECT_NEAR(actions[1], actions[0], kSame * actions[0]);
+    EXPECT_NEAR(actions[2], actions[0], kSame * actions[0]);
+  }
 }
 
 TEST(LimitedGeodesics, DoNotDependOnThreads) {

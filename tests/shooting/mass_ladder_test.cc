@@ -112,6 +112,23 @@ TEST(MassLadder, FinerGridsBeginLower) {
   EXPECT_EQ(MassLadder(easy).rung_of(0, 16), 0);
 }
 
+// The lowest rung for a grid is the first one with a mass whose root is 16 intervals or more.
+TEST(MassLadder, KnowsTheLowestRungForAGrid) {
+  constexpr double kBeta = 1e-3;
+  const BoundaryValueProblem problem = test::light_steering(kTarget, kBeta);
+  const MassLadder ladder(problem);
+  for (const int intervals : {16, 24, 64, 100, 256, 500, 512, 4096}) {
+    const auto is_enough = [&](int rung) {
+      return std::sqrt(std::min(1.0, kBeta * std::pow(4, rung))) * intervals >= 16;
+    };
+    const int rung = ladder.rung_for(intervals);
+    EXPECT_TRUE(is_enough(rung)) << intervals;
+    if (rung > 0) {
+      EXPECT_FALSE(is_enough(rung - 1)) << intervals;
+    }
+  }
+}
+
 // What begins on the ladder ends as an extremal of the problem itself, on grids that err by h^2.
 TEST(MassLadder, RefinedPathsAreOfTheProblemItself) {
   constexpr double kTightened = 1e-9;

@@ -131,8 +131,13 @@ BoundaryValueProblem MassLadder::below(int rung, double share) const {
   return with_masses_from(least_on(rung - share));
 }
 
-int MassLadder::rung_of(int start, int intervals) const {
+int MassLadder::rung_for(int intervals) const {
   constexpr int kCoarse = 16;  // intervals that are enough for a mass of one
+  const double rungs = std::ceil(std::log2(kCoarse / (intervals * std::sqrt(lightest_))));
+  return std::clamp(static_cast<int>(rungs), 0, height());
+}
+
+int MassLadder::rung_of(int start, int intervals) const {
   if (height() == 0) return 0;
   // Heavier problems have fewer extremals, so some begin on the problem itself. Of 40 targets with
   // light steering five are missed where all start at the top, two where all start one rung lower,
@@ -140,8 +145,7 @@ int MassLadder::rung_of(int start, int intervals) const {
   // (starts.cc), so the turns are moved by one after three of them.
   const int turn = (start + start / 3) % 3;
   if (turn == 2) return 0;
-  const double rungs = std::ceil(std::log2(kCoarse / (intervals * std::sqrt(lightest_))));
-  return std::clamp(static_cast<int>(rungs) - turn, 0, height());
+  return std::max(0, rung_for(intervals) - turn);
 }
 
 }  // namespace carnot::internal

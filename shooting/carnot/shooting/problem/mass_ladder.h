@@ -30,6 +30,9 @@ class MassLadder {
   }
   // Between a rung above the problem, share 0, and the one below, share 1.
   [[nodiscard]] BoundaryValueProblem below(int rung, double share) const;
+  // The lowest rung whose layers last as many intervals, of so many, as on the coarsest grid at the
+  // top.
+  [[nodiscard]] int rung_for(int intervals) const;
   // The rung on which start number `start` begins on a grid of so many intervals.
   [[nodiscard]] int rung_of(int start, int intervals) const;
 

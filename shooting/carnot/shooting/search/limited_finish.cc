@@ -21,7 +21,10 @@ constexpr long kFreeSteps = 32;  // of a flow without contact
 
 }  // namespace
 
-// On the grid of half the step.
+bool LimitedFinish::sharpen(Candidate& candidate, double last_mu) const {
+  return solve(candidate.limited, last_mu, candidate);
+}
+
 bool LimitedFinish::refine(Candidate& candidate, double last_mu) const {
   const LimitedPath& coarse = candidate.limited;
   const int m = shared_.walls.size();
@@ -35,17 +38,23 @@ bool LimitedFinish::refine(Candidate& candidate, double last_mu) const {
       fine.nu.push_back(0.5 * (coarse.nu[a] + coarse.nu[b]));
     }
   }
+  if (!solve(std::move(fine), last_mu, candidate)) return false;
+  ++candidate.halvings;
+  return true;
+}
+
+bool LimitedFinish::solve(LimitedPath near, double last_mu, Candidate& candidate) const {
+  const BoundaryValueProblem& problem = shared_.ladder.on(near.path.rung);
   InteriorPointOptions options = shared_.interior;
   options.first_mu = candidate.mu;
   options.last_mu = last_mu;
-  const InteriorPoint solved = interior_point(shared_.problem, shared_.walls, options, fine);
+  const InteriorPoint solved = interior_point(problem, shared_.walls, options, near);
   if (!solved.converged) return false;
-  candidate.limited = std::move(fine);
+  candidate.limited = std::move(near);
   candidate.minimum = solved.minimum;
   candidate.mu = last_mu;
-  candidate.action = discrete_action(shared_.problem.dynamics,
-                                     shared_.problem.time / candidate.limited.path.intervals,
-                                     candidate.limited.path);
+  const double h = problem.time / candidate.limited.path.intervals;
+  candidate.action = discrete_action(problem.dynamics, h, candidate.limited.path);
   return true;
 }
 
@@ -272,14 +281,18 @@ Geodesic LimitedFinish::on_grid(const Candidate& candidate, double coarse_action
 
 std::optional<LimitedExtremal> LimitedFinish::finish(Candidate candidate, const Stop& stop) const {
   // mu on grids of 2, 4, ... times the first one. Contacts are told from the second of them in
-  // nearly all cases.
+  // nearly all cases. What came down the ladder of masses is on such a grid already: without that
+  // searches with light steering take 1.1 times as long.
   constexpr std::array kMu{3e-4, 1e-4, 1e-5, 1e-7};
   constexpr double kBeyondOnGrid = 1e-4;  // between two nodes
+  const int halvings = candidate.halvings;
   Candidate coarse;
   for (std::size_t level = 0; level < kMu.size(); ++level) {
     coarse = candidate;
     if (stop.reached() && stop.asked()) return std::nullopt;
-    if (!refine(candidate, kMu[level])) return std::nullopt;
+    const bool fine = static_cast<int>(level) < halvings;
+    const bool solved = fine ? sharpen(candidate, kMu[level]) : refine(candidate, kMu[level]);
+    if (!solved) return std::nullopt;
     if (level == 0) continue;
     if (auto found = joined(candidate)) return found;
   }

@@ -22,12 +22,13 @@ namespace carnot::internal {
 // extremal has 22.52. With 1e-3 the wall acts on several nodes.
 constexpr double kFirstGridMu = 1e-3;
 
-// A discrete extremal with limits.
+// A discrete extremal with limits, of the problem on the rung of its path (mass_ladder.h).
 struct Candidate {
   LimitedPath limited;
   double action = std::numeric_limits<double>::infinity();
   double mu = kFirstGridMu;
   int hits = 1;
+  int halvings = 0;  // of the step, since its first grid
   bool minimum = false;
   bool tried = false;  // to finish it
 };
@@ -43,6 +44,9 @@ class LimitedFinish {
   LimitedFinish(const LimitedProblem& shared, const GeodesicOptions& options)
       : shared_(shared), options_(options) {}
 
+  // The candidate on the grid of half the step, and one rung down. False where there is none.
+  [[nodiscard]] bool refine(Candidate& candidate, double last_mu) const;
+
   // Nothing where the candidate has no counterpart on finer grids, or is beyond a limit; or where
   // the caller asked to stop.
   [[nodiscard]] std::optional<LimitedExtremal> finish(Candidate candidate,
@@ -57,7 +61,10 @@ class LimitedFinish {
   [[nodiscard]] std::optional<LimitedExtremal> without_contact(Knots knots) const;
 
  private:
-  [[nodiscard]] bool refine(Candidate& candidate, double last_mu) const;
+  // From `near`, on its grid and its rung; sets the candidate where that succeeds.
+  [[nodiscard]] bool solve(LimitedPath near, double last_mu, Candidate& candidate) const;
+  // The candidate with less mu, on the same grid. False where there is none.
+  [[nodiscard]] bool sharpen(Candidate& candidate, double last_mu) const;
   [[nodiscard]] bool settle(Candidate& candidate) const;
   [[nodiscard]] static std::vector<std::vector<double>> points_along(const Path& path);
   [[nodiscard]] std::optional<LimitedExtremal> joined(const Candidate& candidate) const;

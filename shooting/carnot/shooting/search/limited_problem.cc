@@ -15,7 +15,10 @@ namespace carnot::internal {
 
 LimitedProblem::LimitedProblem(const BoundaryValueProblem& limited,
                                const std::vector<Geodesic>& free)
-    : problem(limited), unlimited(limited), walls(limited.limits, limited.dynamics.dof) {
+    : problem(limited),
+      unlimited(limited),
+      ladder(limited),
+      walls(limited.limits, limited.dynamics.dof) {
   unlimited.limits.clear();
   set_sizes(free);
 }

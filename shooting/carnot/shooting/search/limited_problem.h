@@ -8,6 +8,7 @@
 #include "carnot/shooting/geodesic.h"
 #include "carnot/shooting/path/interior_point.h"
 #include "carnot/shooting/path/path.h"
+#include "carnot/shooting/problem/mass_ladder.h"
 #include "carnot/shooting/problem/walls.h"
 #include "carnot/shooting/shoot/knots.h"
 
@@ -34,6 +35,7 @@ class LimitedProblem {
 
   const BoundaryValueProblem& problem;
   BoundaryValueProblem unlimited;
+  MassLadder ladder;  // of the problem with its limits
   Walls walls;
   InteriorPointOptions interior;  // with the sizes of the walls and the rate of action
 

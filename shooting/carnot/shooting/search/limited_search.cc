@@ -10,6 +10,7 @@
 #include "carnot/shooting/extremal/ranking.h"
 #include "carnot/shooting/path/relaxation.h"
 #include "carnot/shooting/problem/stop.h"
+#include "carnot/shooting/search/candidate_list.h"
 #include "carnot/shooting/search/drift_starts.h"
 #include "carnot/shooting/search/limited_finish.h"
 #include "carnot/shooting/search/limited_problem.h"
@@ -44,7 +45,8 @@ class LimitedSearch {
   [[nodiscard]] std::optional<Path> start(int i) const;
   // Solves on the grid of the path.
   [[nodiscard]] std::optional<Candidate> solve(Path path) const;
-  void note(std::optional<Candidate> candidate);
+  // Takes candidates of heavier problems down, rung by rung, to the problem itself.
+  void go_down(int threads);
   [[nodiscard]] std::size_t rivals(const std::vector<Candidate*>& open,
                                    const std::vector<Geodesic>& known) const;
   // Says in the answer where time was up before all of them were finished.
@@ -58,7 +60,7 @@ class LimitedSearch {
   LimitedFinish finish_;
   std::optional<DriftStarts> drift_;
   int intervals_ = 64;
-  std::vector<Candidate> candidates_;
+  CandidateList candidates_;
   Stop stop_;
 };
 
@@ -114,59 +116,55 @@ std::optional<Path> LimitedSearch::start(int i) const {
     const RelaxedStart start = drift_->start(i, intervals_, stop_);
     return start.found ? std::optional(start.path) : std::nullopt;
   }
-  Start start = make_start(shared_.unlimited, options_.seed, i, intervals_);
+  // Where something is light, half of the starts begin on the rung that this grid is fine enough
+  // for, and half on the problem itself, which has more extremals. Measured with 64 random targets
+  // of a vehicle, two seeds: to 40 of them its wheel keeps to a heading of 0.6, to 24 to a steering
+  // angle of 0.6. None is missed of 128 with beta = 0.01, and four are with 0.001. Where all begin
+  // on the problem itself three are, in 1.9 times the time; where none does, 14 of 80 are.
+  const int rung = (i + i / 2) % 2 == 0 ? shared_.ladder.rung_for(intervals_) : 0;
+  const BoundaryValueProblem& problem = shared_.ladder.on(rung);
+  Start start = make_start(problem, options_.seed, i, intervals_);
   draw_in(start.path);
   start.relaxation.wall_rate = kWallRate * shared_.interior.rate;
   start.relaxation.wall_sizes = shared_.interior.sizes;
-  (void)relax(shared_.problem, start.relaxation, start.path);
+  (void)relax(problem, start.relaxation, start.path);
+  start.path.rung = rung;
   return std::move(start.path);
 }
 
 std::optional<Candidate> LimitedSearch::solve(Path path) const {
+  const BoundaryValueProblem& problem = shared_.ladder.on(path.rung);
   InteriorPointOptions options = shared_.interior;
   options.last_mu = kFirstGridMu;
   Candidate candidate;
   candidate.limited.path = std::move(path);
-  if (!interior_point(shared_.problem, shared_.walls, options, candidate.limited).converged)
+  if (!interior_point(problem, shared_.walls, options, candidate.limited).converged)
     return std::nullopt;
-  candidate.action = discrete_action(shared_.problem.dynamics,
-                                     shared_.problem.time / candidate.limited.path.intervals,
-                                     candidate.limited.path);
-  return candidate;
+  const double h = problem.time / candidate.limited.path.intervals;
+  candidate.action = discrete_action(problem.dynamics, h, candidate.limited.path);
+  return std::isfinite(candidate.action) ? std::optional(std::move(candidate)) : std::nullopt;
 }
 
-// Equal ones are counted. Of those that a wall pins to different nodes the least one is kept.
-void LimitedSearch::note(std::optional<Candidate> candidate) {
-  constexpr double kSame = 2e-2;        // of the extent of the path
-  constexpr double kSameOnGrid = 2e-2;  // of the action
-  if (!candidate || !std::isfinite(candidate->action)) return;
-  const Path& path = candidate->limited.path;
-  for (Candidate& known : candidates_) {
-    double apart = 0;
-    double extent = 0;
-    for (std::size_t j = 0; j < path.q.size(); ++j) {
-      apart = std::max(apart, std::abs(path.q[j] - known.limited.path.q[j]));
-      extent = std::max(extent, std::abs(path.q[j] - path.q[j % path.dof]));
+void LimitedSearch::go_down(int threads) {
+  for (int rung = shared_.ladder.height(); rung > 0; --rung) {
+    const std::vector<std::size_t> next = candidates_.waiting_on(rung, options_.all);
+    std::vector<std::optional<Candidate>> found(next.size());
+    parallel_for(static_cast<int>(next.size()), threads, [&](int i) {
+      if (stop_.reached()) return;
+      Candidate candidate = candidates_[next[i]];
+      if (finish_.refine(candidate, kFirstGridMu)) found[i] = std::move(candidate);
+    });
+    for (std::size_t i = 0; i < next.size(); ++i) {
+      std::optional<std::size_t> to;
+      if (found[i]) to = candidates_.note(std::move(*found[i]));
+      candidates_.went_down(next[i], to);
     }
-    if (known.tried || apart > kSame * extent) continue;
-    if (std::abs(known.action - candidate->action) > kSameOnGrid * std::abs(known.action)) continue;
-    candidate->hits += known.hits;
-    if (known.action < candidate->action) std::swap(known.limited, candidate->limited);
-    candidate->action = std::min(known.action, candidate->action);
-    known = std::move(*candidate);
-    return;
   }
-  candidates_.push_back(std::move(*candidate));
 }
 
 bool LimitedSearch::enough() const {
   constexpr int kOften = 3;
-  if (candidates_.empty() || options_.all || options_.count > 1) return false;
-  const auto least = std::min_element(
-      candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
-        return a.action < b.action;
-      });
-  return least->hits >= kOften;
+  return !options_.all && options_.count == 1 && candidates_.hits_of_least() >= kOften;
 }
 
 std::string LimitedSearch::infeasible() const {
@@ -218,14 +216,8 @@ void LimitedSearch::finish_candidates(int threads, LimitedAnswer& answer) {
   std::vector<Geodesic>& geodesics = answer.geodesics;
   constexpr std::size_t kMostTried = 24;
   constexpr std::size_t kAtOnce = 12;  // a second or two on one core
-  std::stable_sort(candidates_.begin(), candidates_.end(), [](const auto& a, const auto& b) {
-    return a.action < b.action;
-  });
   const auto count = static_cast<std::size_t>(options_.count);
-  std::vector<Candidate*> open;
-  for (Candidate& candidate : candidates_) {
-    if (!candidate.tried) open.push_back(&candidate);
-  }
+  std::vector<Candidate*> open = candidates_.open();
   const std::size_t wanted = rivals(open, geodesics);
   if (!options_.all && open.size() > wanted + kMostTried) open.resize(wanted + kMostTried);
   std::size_t next = 0;
@@ -264,7 +256,9 @@ LimitedAnswer LimitedSearch::run() {
     if (best && !answer.geodesics.empty() && options_.count == 1 && !options_.all) return answer;
   }
   for (const Geodesic& geodesic : free_) {
-    if (auto path = shared_.path_along(geodesic, intervals_)) note(solve(std::move(*path)));
+    auto path = shared_.path_along(geodesic, intervals_);
+    auto candidate = path ? solve(std::move(*path)) : std::nullopt;
+    if (candidate) candidates_.note(std::move(*candidate));
   }
   const int most = options_.starts > 0 ? options_.starts : kMostStarts;
   const auto lacks = [&] {
@@ -282,9 +276,11 @@ LimitedAnswer LimitedSearch::run() {
     });
     answer.starts += count;
     for (auto& candidate : found) {
-      answer.converged += candidate ? 1 : 0;
-      note(std::move(candidate));
+      if (!candidate) continue;
+      ++answer.converged;
+      candidates_.note(std::move(*candidate));
     }
+    go_down(threads);
     if (enough()) finish_candidates(threads, answer);
   }
   finish_candidates(threads, answer);

@@ -4,7 +4,10 @@
 //      |  relax    what is beyond a wall costs            path/relaxation.h
 //   a path
 //      |  solve    slacks and multipliers on the grid     path/interior_point.h
-//   a discrete extremal with limits, then on finer grids
+//   a discrete extremal with limits, perhaps of a heavier problem
+//      |  go down  to the problem itself                  problem/mass_ladder.h
+//   the list of these                                     search/candidate_list.h
+//      |  refine   on finer grids                         search/limited_finish.h
 //      |  join     arcs on walls and points of contact    shoot/bound_arcs.h
 //   an extremal, flows piece by piece
 //
