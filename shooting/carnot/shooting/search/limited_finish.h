@@ -67,7 +67,9 @@ class LimitedFinish {
   [[nodiscard]] bool sharpen(Candidate& candidate, double last_mu) const;
   [[nodiscard]] bool settle(Candidate& candidate) const;
   [[nodiscard]] static std::vector<std::vector<double>> points_along(const Path& path);
-  [[nodiscard]] std::optional<LimitedExtremal> joined(const Candidate& candidate) const;
+  // The pieces of a candidate joined, where that succeeds; on the first grid on which it is tried,
+  // level 1, or on a finer one.
+  [[nodiscard]] std::optional<LimitedExtremal> joined(const Candidate& candidate, int level) const;
   [[nodiscard]] std::optional<LimitedExtremal> by_flow(Knots knots) const;
   [[nodiscard]] Geodesic on_grid(const Candidate& candidate, double coarse_action) const;
   void add_extremes(const std::vector<std::vector<double>>& q, Geodesic& geodesic) const;
