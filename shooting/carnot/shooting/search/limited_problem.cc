@@ -1,6 +1,7 @@
 #include "carnot/shooting/search/limited_problem.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -78,17 +79,21 @@ bool LimitedProblem::keeps_to_limits(const Geodesic& geodesic, double beyond) co
 }
 
 std::optional<Geodesic> LimitedProblem::within(const Geodesic& geodesic) const {
-  constexpr int kDense = 2048;
+  // Most are far beyond a limit, which few samples tell. Many take a tenth of a search.
+  constexpr std::array kSamples{65, 2049};
   Geodesic judged = geodesic;
-  if (geodesic.verification == Verification::kSingle) {
-    std::vector<double> z = geodesic.from;
-    z.insert(z.end(), geodesic.p0.begin(), geodesic.p0.end());
-    const Knots knots = knots_of(unlimited, start_unknowns(unlimited, z.data()), 1, 1);
-    report_limits(survey(unlimited, knots, geodesic.plan.count, kDense + 1).trajectory.q, judged);
-  } else {
+  if (geodesic.verification != Verification::kSingle) {
     report_limits(geodesic.trajectory.q, judged);
+    return keeps_to_limits(judged) ? std::optional(std::move(judged)) : std::nullopt;
   }
-  return keeps_to_limits(judged) ? std::optional(std::move(judged)) : std::nullopt;
+  std::vector<double> z = geodesic.from;
+  z.insert(z.end(), geodesic.p0.begin(), geodesic.p0.end());
+  const Knots knots = knots_of(unlimited, start_unknowns(unlimited, z.data()), 1, 1);
+  for (const int samples : kSamples) {
+    report_limits(survey(unlimited, knots, geodesic.plan.count, samples).trajectory.q, judged);
+    if (!keeps_to_limits(judged)) return std::nullopt;
+  }
+  return judged;
 }
 
 std::optional<Path> LimitedProblem::path_along(const Geodesic& geodesic, int intervals) const {
