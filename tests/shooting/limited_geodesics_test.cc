@@ -122,27 +122,42 @@ TEST(LimitedGeodesics, JoinPiecesThatMagnify) {
   EXPECT_NEAR(geodesic.action, on_grid.action, on_grid.grid_error);
 }
 
-// The more a coordinate weighs, the more action it takes: candidates lose some on each rung. At the
-// foot they are on a grid that resolves their layers, and extremals of the problem itself.
-TEST(LimitedGeodesics, GoDownTheLadderOfMasses) {
-  constexpr int kIntervals = 64;
-  constexpr double kBeta = 1e-3;
-  BoundaryValueProblem problem = test::light_steering({1, 1, 0.5, 0.2}, kBeta);
+// The vehicle with light steering and a limit from C++, which has no arcs: its answers are on
+// grids.
+BoundaryValueProblem light_and_limited(double beta) {
+  BoundaryValueProblem problem = test::light_steering({1, 1, 0.5, 0.2}, beta);
   problem.limits = {make_limit<4>(
       "steering", [](const auto& q) { return q[3] - q[2]; }, -0.6, 0.6)};
-  const LimitedProblem shared(problem, {});
-  const LimitedFinish finish(shared, {});
+  return problem;
+}
+
+// From the straight line, on the rung that 64 intervals are enough for.
+Candidate heavy_candidate(const LimitedProblem& shared) {
+  constexpr int kIntervals = 64;
   const int rung = shared.ladder.rung_for(kIntervals);
-  ASSERT_GT(rung, 0);
+  const BoundaryValueProblem& problem = shared.ladder.on(rung);
   Candidate candidate;
   candidate.limited.path = make_start(problem, 0, 0, kIntervals).path;
   candidate.limited.path.lambda.assign(2 * kIntervals, 0.0);
   candidate.limited.path.rung = rung;
   InteriorPointOptions interior = shared.interior;
   interior.last_mu = kFirstGridMu;
-  const BoundaryValueProblem& top = shared.ladder.on(rung);
-  ASSERT_TRUE(interior_point(top, shared.walls, interior, candidate.limited).converged);
-  candidate.action = discrete_action(top.dynamics, 1.0 / kIntervals, candidate.limited.path);
+  EXPECT_TRUE(interior_point(problem, shared.walls, interior, candidate.limited).converged);
+  candidate.action = discrete_action(problem.dynamics, 1.0 / kIntervals, candidate.limited.path);
+  return candidate;
+}
+
+// The more a coordinate weighs, the more action it takes: candidates lose some on each rung. At the
+// foot they are on a grid that resolves their layers, and extremals of the problem itself.
+TEST(LimitedGeodesics, GoDownTheLadderOfMasses) {
+  const BoundaryValueProblem problem = light_and_limited(1e-3);
+  const LimitedProblem shared(problem, {});
+  const GeodesicOptions options;
+  const LimitedFinish finish(shared, options);
+  Candidate candidate = heavy_candidate(shared);
+  const int rung = candidate.limited.path.rung;
+  const int intervals = candidate.limited.path.intervals;
+  ASSERT_GT(rung, 0);
   for (int below = rung - 1; below >= 0; --below) {
     const double before = candidate.action;
     ASSERT_TRUE(finish.refine(candidate, kFirstGridMu)) << below;
@@ -150,12 +165,35 @@ TEST(LimitedGeodesics, GoDownTheLadderOfMasses) {
     EXPECT_LT(candidate.action, before);
   }
   EXPECT_EQ(candidate.halvings, rung);
-  EXPECT_EQ(candidate.limited.path.intervals, kIntervals << rung);
+  EXPECT_EQ(candidate.limited.path.intervals, intervals << rung);
   LimitedPath again = candidate.limited;
-  interior.first_mu = interior.last_mu;
+  InteriorPointOptions interior = shared.interior;
+  interior.first_mu = interior.last_mu = kFirstGridMu;
   const InteriorPoint solved = interior_point(problem, shared.walls, interior, again);
   EXPECT_TRUE(solved.converged);
   EXPECT_EQ(solved.iterations, 0);
+}
+
+// However many rungs a candidate came down, two grids tell its action, and its error with it.
+// Layers leave an error of 1e-6 or more on grids that one can afford.
+TEST(LimitedGeodesics, TellTheErrorOfAGridThatIsFineAlready) {
+  constexpr double kLeastError = 1e-7;
+  constexpr int kManyRungs = 4;
+  const BoundaryValueProblem problem = light_and_limited(1e-4);
+  const LimitedProblem shared(problem, {});
+  const GeodesicOptions options;
+  const LimitedFinish finish(shared, options);
+  Candidate candidate = heavy_candidate(shared);
+  ASSERT_GE(candidate.limited.path.rung, kManyRungs);
+  while (candidate.limited.path.rung > 0) {
+    ASSERT_TRUE(finish.refine(candidate, kFirstGridMu)) << candidate.limited.path.rung;
+  }
+  const auto finished = finish.finish(candidate);
+  ASSERT_TRUE(finished);
+  const Geodesic& geodesic = finished->geodesic;
+  EXPECT_EQ(geodesic.verification, Verification::kGrid);
+  EXPECT_GT(geodesic.grid_error, kLeastError * geodesic.action);
+  EXPECT_LT(geodesic.grid_error, 1e-2 * geodesic.action);
 }
 
 // Where steering is light starts take many ways, and lead to one geodesic.

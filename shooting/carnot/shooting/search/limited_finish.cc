@@ -20,6 +20,23 @@ namespace {
 
 constexpr long kFreeSteps = 32;  // of a flow without contact
 
+// Of the flows along a piece, at least. Flows along a light steering axle magnify, so that they
+// have to be short. A car (wheelbase 2.7, angle of the steering at most 0.6) to 16 random targets:
+// where the steering has an inertia of 0.001, 4 answers are joined with 8 segments and all with 32;
+// where it has 0.0001, 1 with 8, 2 with 32, and 14 with 96 or 128.
+//
+// But where a grid is too coarse to tell the contacts, no number joins the pieces, and to find that
+// out with 96 takes half a second. So each grid tries one number more than the one before. If all
+// are tried on each, 48 searches for a vehicle whose steering has an inertia of 0.01 take 1.3 times
+// as long, and 220 for vehicle, trailer1 and unicycle with ordinary masses, too, with the same
+// answers.
+constexpr std::array kSegmentCounts{8, 32, 96};
+
+// mu on grids of 2, 4, ... times the first one. Contacts are told from the second of them in nearly
+// all cases.
+constexpr std::array kBarriers{3e-4, 1e-4, 1e-5, 1e-7};
+static_assert(kBarriers.size() == kSegmentCounts.size() + 1);
+
 }  // namespace
 
 bool LimitedFinish::sharpen(Candidate& candidate, double last_mu) const {
@@ -160,18 +177,9 @@ std::optional<LimitedExtremal> LimitedFinish::with_contacts_of(const BoundExtrem
 }
 
 std::optional<LimitedExtremal> LimitedFinish::joined(const Candidate& candidate, int level) const {
-  // Flows along a light steering axle magnify, so that they have to be short. A car (wheelbase 2.7,
-  // angle of the steering at most 0.6) to 16 random targets: where the steering has an inertia of
-  // 0.001, 4 answers are joined with 8 segments and all with 32; where it has 0.0001, 1 with 8, 2
-  // with 32, and 14 with 96 or 128. But where a grid is too coarse to tell the contacts, no number
-  // joins the pieces, and to find that out with 96 takes half a second. So each grid tries one
-  // number more than the one before. If all are tried on each, 48 searches for a vehicle whose
-  // steering has an inertia of 0.01 take 1.3 times as long, and 220 for vehicle, trailer1 and
-  // unicycle with ordinary masses, too, with the same answers.
-  constexpr std::array kSegments{8, 32, 96};
   constexpr std::array kKinds{
       Contacts::kByOrder, Contacts::kArcs, Contacts::kTouches, Contacts::kPairs};
-  for (const int segments : std::span(kSegments).first(level)) {
+  for (const int segments : std::span(kSegmentCounts).first(level)) {
     for (const Contacts as : kKinds) {
       const auto pieces = pieces_of(
           shared_.problem, shared_.walls, shared_.interior, candidate.limited, as, segments);
@@ -284,18 +292,18 @@ Geodesic LimitedFinish::on_grid(const Candidate& candidate, double coarse_action
 }
 
 std::optional<LimitedExtremal> LimitedFinish::finish(Candidate candidate, const Stop& stop) const {
-  // mu on grids of 2, 4, ... times the first one. Contacts are told from the second of them in
-  // nearly all cases. What came down the ladder of masses is on such a grid already: without that
-  // searches with light steering take 1.1 times as long.
-  constexpr std::array kMu{3e-4, 1e-4, 1e-5, 1e-7};
   constexpr double kBeyondOnGrid = 1e-4;  // between two nodes
-  const int halvings = candidate.halvings;
+  // What came down the ladder of masses is on a finer grid already, and is refined for the error of
+  // the last one only. If it is refined for each mu, searches with light steering take 1.1 times as
+  // long.
+  const std::size_t fine =
+      std::min(static_cast<std::size_t>(candidate.halvings), kBarriers.size() - 1);
   Candidate coarse;
-  for (std::size_t level = 0; level < kMu.size(); ++level) {
+  for (std::size_t level = 0; level < kBarriers.size(); ++level) {
     coarse = candidate;
     if (stop.reached() && stop.asked()) return std::nullopt;
-    const bool fine = static_cast<int>(level) < halvings;
-    const bool solved = fine ? sharpen(candidate, kMu[level]) : refine(candidate, kMu[level]);
+    const bool solved =
+        level < fine ? sharpen(candidate, kBarriers[level]) : refine(candidate, kBarriers[level]);
     if (!solved) return std::nullopt;
     if (level == 0) continue;
     if (auto found = joined(candidate, static_cast<int>(level))) return found;

@@ -146,8 +146,9 @@ std::optional<Candidate> LimitedSearch::solve(Path path) const {
 }
 
 void LimitedSearch::go_down(int threads) {
+  const bool all = options_.all || options_.count > 1;
   for (int rung = shared_.ladder.height(); rung > 0; --rung) {
-    const std::vector<std::size_t> next = candidates_.waiting_on(rung, options_.all);
+    const std::vector<std::size_t> next = candidates_.waiting_on(rung, all);
     std::vector<std::optional<Candidate>> found(next.size());
     parallel_for(static_cast<int>(next.size()), threads, [&](int i) {
       if (stop_.reached()) return;
