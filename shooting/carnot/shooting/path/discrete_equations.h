@@ -40,8 +40,9 @@ class DiscreteEquations {
   }
 
   // What stands for the second derivatives of sum F_d by the nodes: a combination of themselves and
-  // of B. B = sum h J'J with J = dr/dq is made of those of the kinetic energy, without the
-  // curvature of its terms. It is positive definite where the constraints leave the nodes free.
+  // of B = sum h J'J with J = dr/dq, r the terms of midpoint_transcription.h. B is made of second
+  // derivatives of the kinetic energy and of a share of |G v|^2, without the curvature of their
+  // terms. It is positive definite where the constraints leave the nodes free.
   struct Weights {
     double hessian = 1;
     double metric = 0;
