@@ -112,7 +112,7 @@ TEST(MassLadder, FinerGridsBeginLower) {
   EXPECT_EQ(MassLadder(easy).rung_of(0, 16), 0);
 }
 
-// The lowest rung for a grid is the first one with a mass whose root is 16 intervals or more.
+// On the lowest rung for a grid the root of the least mass lasts 16 intervals, of a time of one.
 TEST(MassLadder, KnowsTheLowestRungForAGrid) {
   constexpr double kBeta = 1e-3;
   const BoundaryValueProblem problem = test::light_steering(kTarget, kBeta);

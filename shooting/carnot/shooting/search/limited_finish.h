@@ -44,6 +44,9 @@ class LimitedFinish {
   LimitedFinish(const LimitedProblem& shared, const GeodesicOptions& options)
       : shared_(shared), options_(options) {}
 
+  // From `near`, on its grid and its rung, and from the candidate's mu down to another; sets the
+  // candidate where that succeeds.
+  [[nodiscard]] bool solve(LimitedPath near, double last_mu, Candidate& candidate) const;
   // The candidate on the grid of half the step, and one rung down. False where there is none.
   [[nodiscard]] bool refine(Candidate& candidate, double last_mu) const;
 
@@ -61,8 +64,6 @@ class LimitedFinish {
   [[nodiscard]] std::optional<LimitedExtremal> without_contact(Knots knots) const;
 
  private:
-  // From `near`, on its grid and its rung; sets the candidate where that succeeds.
-  [[nodiscard]] bool solve(LimitedPath near, double last_mu, Candidate& candidate) const;
   // The candidate with less mu, on the same grid. False where there is none.
   [[nodiscard]] bool sharpen(Candidate& candidate, double last_mu) const;
   [[nodiscard]] bool settle(Candidate& candidate) const;

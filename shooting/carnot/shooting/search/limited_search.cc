@@ -133,16 +133,13 @@ std::optional<Path> LimitedSearch::start(int i) const {
 }
 
 std::optional<Candidate> LimitedSearch::solve(Path path) const {
-  const BoundaryValueProblem& problem = shared_.ladder.on(path.rung);
-  InteriorPointOptions options = shared_.interior;
-  options.last_mu = kFirstGridMu;
   Candidate candidate;
-  candidate.limited.path = std::move(path);
-  if (!interior_point(problem, shared_.walls, options, candidate.limited).converged)
-    return std::nullopt;
-  const double h = problem.time / candidate.limited.path.intervals;
-  candidate.action = discrete_action(problem.dynamics, h, candidate.limited.path);
-  return std::isfinite(candidate.action) ? std::optional(std::move(candidate)) : std::nullopt;
+  candidate.mu = shared_.interior.first_mu;
+  LimitedPath near;
+  near.path = std::move(path);
+  const bool solved = finish_.solve(std::move(near), kFirstGridMu, candidate);
+  return solved && std::isfinite(candidate.action) ? std::optional(std::move(candidate))
+                                                   : std::nullopt;
 }
 
 void LimitedSearch::go_down(int threads) {
