@@ -44,8 +44,8 @@ namespace dynamics_calls {
 template <class B>
 Regularity regularity(const void* opaque, double t, const double* q_in, const double* p_in) {
   const B& bound = B::from(opaque);
-  const Vector<double, B::n> q = view<B::n>(q_in);
-  const Vector<double, B::n> p = view<B::n>(p_in);
+  const Vector<double, B::n> q = vector_at<B::n>(q_in);
+  const Vector<double, B::n> p = vector_at<B::n>(p_in);
   Vector<double, B::m> y = bound.branch;
   Rate<double, B::n> rate;
   (void)bound.system.rate(t, q, p, y, rate);
@@ -59,13 +59,13 @@ double momentum(const void* opaque,
                 double* q_dot,
                 const double* lambda_in,
                 double* p_out) {
-  const Vector<double, B::n> q = view<B::n>(q_in);
-  Vector<double, B::n> v = view<B::n>(q_dot);
+  const Vector<double, B::n> q = vector_at<B::n>(q_in);
+  Vector<double, B::n> v = vector_at<B::n>(q_dot);
   Vector<double, B::n> p;
-  const Vector<double, B::k> lambda = view<B::k>(lambda_in);
+  const Vector<double, B::k> lambda = vector_at<B::k>(lambda_in);
   const double violated = B::from(opaque).system.admissible_momentum(t, q, v, lambda, p);
-  view<B::n>(q_dot) = v;
-  view<B::n>(p_out) = p;
+  store(v, q_dot);
+  store(p, p_out);
   return violated;
 }
 
@@ -75,45 +75,45 @@ void holonomic(
   const auto& system = B::from(opaque).system;
   const auto& scene = system.scene();
   constexpr int l = std::decay_t<decltype(scene)>::kHolonomic;
-  const Vector<double, B::n> q = view<B::n>(z);
-  view<l>(h) = scene.holonomic(q);
+  const Vector<double, B::n> q = vector_at<B::n>(z);
+  store(Vector<double, l>(scene.holonomic(q)), h);
   const Matrix<double, l, B::n> rows = holonomic_jacobian(scene, q);
   for (int i = 0; i < l; ++i) {
     for (int j = 0; j < B::n; ++j) dh[i * B::n + j] = rows(i, j);
   }
   Vector<double, B::m> y = B::from(opaque).branch;
   Vector<double, 2 * B::n> rate;
-  const Vector<double, 2 * B::n> at = view<2 * B::n>(z);
+  const Vector<double, 2 * B::n> at = vector_at<2 * B::n>(z);
   if (phase_rate(system, t, at, y, rate) != RateStatus::kOk) {
-    rate.setConstant(std::numeric_limits<double>::quiet_NaN());
+    rate = filled<2 * B::n>(std::numeric_limits<double>::quiet_NaN());
   }
-  view<B::n>(q_dot) = rate.template head<B::n>();
+  store(part<0, B::n>(rate), q_dot);
 }
 
 template <class B>
 bool project_on_manifold(const void* opaque, double t, double* z) {
   const auto& system = B::from(opaque).system;
-  Vector<double, B::n> q = view<B::n>(z);
-  Vector<double, B::n> p = view<B::n>(z + B::n);
+  Vector<double, B::n> q = vector_at<B::n>(z);
+  Vector<double, B::n> p = vector_at<B::n>(z + B::n);
   if (!project_configuration(system.scene(), q)) return false;
   if (project_momentum(system, t, q, p) != RateStatus::kOk) return false;
-  view<B::n>(z) = q;
-  view<B::n>(z + B::n) = p;
+  store(q, z);
+  store(p, z + B::n);
   return true;
 }
 
 template <class B>
 bool tangent_projector(const void* opaque, double t, const double* z, double* projector) {
   Matrix<double, 2 * B::n, 2 * B::n> p;
-  const Vector<double, 2 * B::n> at = view<2 * B::n>(z);
+  const Vector<double, 2 * B::n> at = vector_at<2 * B::n>(z);
   if (!manifold_projector(B::from(opaque).system, t, at, p)) return false;
-  view<4 * B::n * B::n>(projector) = view<4 * B::n * B::n>(p.data());
+  store(p, projector);
   return true;
 }
 
 template <class B>
 double chart(const void* opaque, const double* q) {
-  return B::from(opaque).system.scene().chart(Vector<double, B::n>(view<B::n>(q)));
+  return B::from(opaque).system.scene().chart(vector_at<B::n>(q));
 }
 
 template <class B>
@@ -121,11 +121,8 @@ std::shared_ptr<const void> branch(
     const void* opaque, double t, const double* q, const double* p, const double* lambda) {
   const B& bound = B::from(opaque);
   auto other = std::make_shared<B>(bound);
-  const RateStatus status = bound.system.branch(t,
-                                                Vector<double, B::n>(view<B::n>(q)),
-                                                Vector<double, B::n>(view<B::n>(p)),
-                                                Vector<double, B::k>(view<B::k>(lambda)),
-                                                other->branch);
+  const RateStatus status = bound.system.branch(
+      t, vector_at<B::n>(q), vector_at<B::n>(p), vector_at<B::k>(lambda), other->branch);
   if (status != RateStatus::kOk) return nullptr;
   return other;
 }

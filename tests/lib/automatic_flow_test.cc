@@ -102,7 +102,7 @@ TEST(AutomaticFlow, ServesGaussMethodsOfOrderEightAndMore) {
       auto z = start;
       const AutomaticFlow run = dynamics.automatic_flow(0, 5, tolerance, z);
       EXPECT_TRUE(run.reached) << method;
-      EXPECT_LE((view<8>(z.data()) - view<8>(expected.data())).cwiseAbs().maxCoeff(),
+      EXPECT_LE((vector_at<8>(z.data()) - vector_at<8>(expected.data())).cwiseAbs().maxCoeff(),
                 kBeyond * tolerance)
           << method;
     }

@@ -73,7 +73,7 @@ TYPED_TEST(ControlScenesTest, DescribeThemselves) {
 TYPED_TEST(ControlScenesTest, MirrorsLeaveTheHamiltonianInvariant) {
   EXPECT_FALSE(this->info_.symmetries.mirrors.empty());
   for (const auto& mirror : this->info_.symmetries.mirrors) {
-    const typename TestFixture::Q d = view<TypeParam::kDof>(mirror.data());
+    const typename TestFixture::Q d = vector_at<TypeParam::kDof>(mirror.data());
     this->expect_invariant(
         [&](auto& q, auto& p) {
           q = q.cwiseProduct(d).eval();

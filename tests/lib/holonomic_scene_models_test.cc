@@ -95,7 +95,7 @@ TYPED_TEST(HolonomicSceneModelsTest, MirrorsLeaveEverythingInvariant) {
   EXPECT_FALSE(this->info_.symmetries.mirrors.empty());
   for (const auto& mirror : this->info_.symmetries.mirrors) {
     ASSERT_EQ(mirror.size(), static_cast<std::size_t>(n));
-    const Vector<double, n> d = view<n>(mirror.data());
+    const Vector<double, n> d = vector_at<n>(mirror.data());
     for (int i = 0; i < kSamples; ++i) {
       const auto q = this->configuration();
       const auto p = test::random_vector<n>(this->generator_);

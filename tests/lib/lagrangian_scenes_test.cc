@@ -238,7 +238,7 @@ TYPED_TEST(LagrangianSceneInfoTest, MirrorsAreSymmetries) {
   test::Generator generator(4);
   for (const auto& mirror : info.symmetries.mirrors) {
     ASSERT_EQ(mirror.size(), kDof);
-    const Vector<double, kDof> d = view<kDof>(mirror.data());
+    const Vector<double, kDof> d = vector_at<kDof>(mirror.data());
     for (int sample = 0; sample < 5; ++sample) {
       const auto q = test::random_vector<kDof>(generator);
       const auto v = test::random_vector<kDof>(generator, 0.5);

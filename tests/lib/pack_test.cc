@@ -46,6 +46,7 @@ TYPED_TEST(PackTest, ComputesLaneByLane) {
   const auto y = this->some(-3);
   const auto a = this->pack(x);
   const auto b = this->pack(y);
+  const double sum_of_lanes = sum(a);
   const auto sum = this->numbers(a + b);
   const auto difference = this->numbers(a - b);
   const auto product = this->numbers(a * b);
@@ -71,6 +72,14 @@ TYPED_TEST(PackTest, ComputesLaneByLane) {
     most = std::max(most, x[i]);
   }
   EXPECT_EQ(largest(a), most);
+  // In any order: each addition rounds once, and there are fewer than lanes.
+  double total = 0;
+  double size = 0;
+  for (const double lane : x) {
+    total += lane;
+    size += std::abs(lane);
+  }
+  EXPECT_NEAR(sum_of_lanes, total, TypeParam::kLanes * kEps * size);
 }
 
 // One lane decides.

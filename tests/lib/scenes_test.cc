@@ -72,7 +72,7 @@ TYPED_TEST(ScenesTest, DescribeThemselves) {
 TYPED_TEST(ScenesTest, MirrorsLeaveTheHamiltonianInvariant) {
   EXPECT_FALSE(this->info_.symmetries.mirrors.empty());
   for (const auto& mirror : this->info_.symmetries.mirrors) {
-    const Vector<double, TypeParam::kDof> d = view<TypeParam::kDof>(mirror.data());
+    const Vector<double, TypeParam::kDof> d = vector_at<TypeParam::kDof>(mirror.data());
     this->expect_invariant(
         [&](auto& q, auto& p) {
           q = q.cwiseProduct(d).eval();

@@ -125,9 +125,9 @@ TEST_F(TrajectoryTest, RowsAreConsistent) {
   auto z = start_;
   const Trajectory out = record(StepPlan::of_length(0, 2, 0.1), 33, z);
   for (std::size_t i = 0; i < out.t.size(); ++i) {
-    const Vector<double, 4> q = view<4>(out.q[i].data());
-    const Vector<double, 4> p = view<4>(out.p[i].data());
-    const Vector<double, 2> lambda = view<2>(out.lambda[i].data());
+    const Vector<double, 4> q = vector_at<4>(out.q[i].data());
+    const Vector<double, 4> p = vector_at<4>(out.p[i].data());
+    const Vector<double, 2> lambda = vector_at<2>(out.lambda[i].data());
     Vector<double, 2> y;
     Rate<double, 4> rate;
     ASSERT_EQ(system_.rate(0.0, q, p, y, rate), RateStatus::kOk);

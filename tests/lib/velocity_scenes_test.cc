@@ -199,7 +199,7 @@ TYPED_TEST(VelocityScenesTest, MirrorsAreAllThatThereAre) {
   for (unsigned signs = 1; signs < 1U << n; ++signs) {
     std::vector<double> mirror(n);
     for (unsigned i = 0; i < n; ++i) mirror[i] = (signs >> i & 1U) != 0 ? -1 : 1;
-    const typename TestFixture::Q d = view<TypeParam::kDof>(mirror.data());
+    const typename TestFixture::Q d = vector_at<TypeParam::kDof>(mirror.data());
     const double change = this->change_of_hamiltonian([&](auto& q, auto& p) {
       q = q.cwiseProduct(d).eval();
       p = p.cwiseProduct(d).eval();

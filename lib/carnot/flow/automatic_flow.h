@@ -62,6 +62,23 @@ typename Stepper::Scalar step_error(const Stepper& step) {
   return low > T(0) ? high * T(std::pow(float(high / low), float(exponent))) : T(0);
 }
 
+// The largest distance that a component goes in the step just done, there and back.
+template <class Stepper>
+typename Stepper::Scalar distance_moved(const Stepper& step) {
+  using T = typename Stepper::Scalar;
+  if constexpr (Stepper::kRows) {
+    return packed_distance<Stepper::kSize, Stepper::kMaxStages>(step.increments().data());
+  } else {
+    T most(0);
+    for (int k = 0; k < Stepper::kSize; ++k) {
+      T sum(0);
+      for (int j = 0; j < step.tableau().stages(); ++j) sum += std::abs(step.increments()(k, j));
+      most = std::max(most, sum);
+    }
+    return most;
+  }
+}
+
 namespace automatic {
 
 // Found on the vehicles and on heisenberg over six decades of the tolerance.
@@ -117,7 +134,7 @@ Trial<Stepper> trial(const Stepper& fresh,
   auto y = stepper.branch();
   ++trial.evaluations;
   if (phase_rate(stepper.system(), start, initial.value, y, rate) != RateStatus::kOk) return trial;
-  double speed = rate.cwiseAbs().maxCoeff();
+  double speed = largest_entry(rate);
   double t = start;
   double left = std::abs(duration);
   double h = left / kFirst;
@@ -128,7 +145,7 @@ Trial<Stepper> trial(const Stepper& fresh,
     stepper.stop_at(kLoose * speed * length);
     const StepReport report = stepper.step(t, sign * length, z);
     trial.evaluations += report.evaluations;
-    const double moved = stepper.increments().cwiseAbs().rowwise().sum().maxCoeff();
+    const double moved = distance_moved(stepper);
     if (report.status == StepStatus::kOk) speed = moved / length;
     const double error = report.status == StepStatus::kOk ? step_error(stepper) : INFINITY;
     if (!(error <= kUnresolved * moved)) {
@@ -165,7 +182,7 @@ AutomaticFlow automatic_flow(const Stepper& fresh,
   const auto trial = automatic::trial(fresh, start, duration, z);
   result.evaluations = trial.evaluations;
   if (!trial.done) return result;
-  const double size = std::max(1.0, trial.z.value.cwiseAbs().maxCoeff());
+  const double size = std::max(1.0, largest_entry(trial.z.value));
   if (tolerance < kRoundOff * std::numeric_limits<double>::epsilon() * size) return result;
 
   const auto run = [&](double count, double stop, State<double, Stepper::kDof>& end) {
@@ -180,10 +197,12 @@ AutomaticFlow automatic_flow(const Stepper& fresh,
     });
     end = turns.unfolded(end);
     result.evaluations += result.report.evaluations;
-    return result.report.completed() && end.value.allFinite();
+    return result.report.completed() && all_finite(end.value);
   };
   const auto distance = [](const auto& a, const auto& b) {
-    return (a.value - b.value).cwiseAbs().maxCoeff();
+    Vector<double, Stepper::kSize> difference;
+    for (int k = 0; k < Stepper::kSize; ++k) difference[k] = a.value[k] - b.value[k];
+    return largest_entry(difference);
   };
 
   const double aim = tolerance / kMargin;

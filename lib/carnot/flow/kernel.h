@@ -1,6 +1,7 @@
 // A stepper, and all that runs by it, behind the function pointers of flow_calls.h.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -74,7 +75,9 @@ typename M::Stepper stepper_of(const M& method,
 
 template <int n>
 State<double, n> load(const double* z) {
-  return {view<2 * n>(z), Vector<double, 2 * n>::Zero()};
+  State<double, n> state{Vector<double, 2 * n>(z), {}};
+  std::fill_n(state.compensation.data(), 2 * n, 0.0);
+  return state;
 }
 
 template <class M>
@@ -89,7 +92,7 @@ FlowReport flow(const void* opaque, const void* data, const StepPlan& plan, doub
     winding.fold(node);
     return true;
   });
-  view<2 * n>(z) = winding.unfolded(state).value;
+  store(winding.unfolded(state).value, z);
   return report;
 }
 
@@ -104,16 +107,22 @@ FlowReport tangent_flow(
   auto state = load<M::n>(z);
   auto winding = method.winding;
   winding.fold(state);
-  Compensated<Square> tangent{Square::Identity(), Square::Zero()};
+  Compensated<Square> tangent;
+  for (int c = 0; c < kSize; ++c) {
+    for (int r = 0; r < kSize; ++r) {
+      tangent.value(r, c) = r == c ? 1 : 0;
+      tangent.compensation(r, c) = 0;
+    }
+  }
   const FlowReport report =
       carnot::tangent_flow(stepper, plan, state, tangent, [&](long, const auto&, auto& node) {
         winding.fold(node);
         return true;
       });
-  view<kSize>(z) = winding.unfolded(state).value;
-  using RowMajor = Eigen::Matrix<double, kSize, kSize, Eigen::RowMajor>;
-  Eigen::Map<RowMajor> out(m);
-  out = tangent.value;
+  store(winding.unfolded(state).value, z);
+  for (int r = 0; r < kSize; ++r) {
+    for (int c = 0; c < kSize; ++c) m[r * kSize + c] = tangent.value(r, c);
+  }
   return report;
 }
 
@@ -145,7 +154,7 @@ FlowSummary monitored_flow(const void* opaque,
     if (!options.progress || i % kProgressEvery != 0) return true;
     return options.progress(static_cast<double>(i) / static_cast<double>(plan.count));
   });
-  view<2 * M::n>(z) = winding.unfolded(state).value;
+  store(winding.unfolded(state).value, z);
   if (!std::isfinite(monitor.energy_drift())) {
     summary.report.status = FlowStatus::kStepFailed;
     summary.report.last.status = StepStatus::kRateFailed;
@@ -175,7 +184,7 @@ AutomaticFlow automatic_flow(const void* opaque,
   auto state = load<M::n>(z);
   const AutomaticFlow result =
       carnot::automatic_flow(stepper, start, duration, tolerance, state, method.winding);
-  view<2 * M::n>(z) = state.value;
+  store(state.value, z);
   return result;
 }
 

@@ -1,6 +1,7 @@
 // An extremal at chosen times, as plain numbers for output and plots.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -57,7 +58,7 @@ class Recorder {
           if (b != 0) work_between += (t - from) * b * at.power;
         });
       } else {
-        between.value.setConstant(std::numeric_limits<double>::quiet_NaN());
+        std::fill_n(between.value.data(), 2 * n, std::numeric_limits<double>::quiet_NaN());
       }
       record(step.system(), t, between, shortened.branch(), work_between);
     }
@@ -74,9 +75,10 @@ class Recorder {
   [[nodiscard]] std::size_t next() const { return trajectory_.t.size(); }
 
   void record(const System& system, double t, const State<double, n>& z, Algebraic y, double work) {
-    const Vector<double, n> q = z.value.template head<n>();
-    const Vector<double, n> p = z.value.template tail<n>();
-    Vector<double, k> lambda = Vector<double, k>::Zero();
+    const Vector<double, n> q(z.value.data());
+    const Vector<double, n> p(z.value.data() + n);
+    Vector<double, k> lambda;
+    std::fill_n(lambda.data(), k, 0.0);
     Rate<double, n> rate;
     bool ok = system.rate(t, q, p, y, rate) == RateStatus::kOk;
     ok = ok && system.multipliers(t, q, p, y, lambda) == RateStatus::kOk;

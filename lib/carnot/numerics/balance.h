@@ -18,7 +18,8 @@ template <class T, int n>
 [[nodiscard]] Vector<T, n> balanced_units(Matrix<T, n, n> sizes) {
   using std::frexp, std::ldexp;
   constexpr int kMostSweeps = 16;
-  Vector<T, n> units = Vector<T, n>::Constant(T(1));
+  Vector<T, n> units;
+  for (int i = 0; i < n; ++i) units[i] = T(1);
   bool changing = true;
   for (int sweep = 0; changing && sweep < kMostSweeps; ++sweep) {
     changing = false;

@@ -11,9 +11,26 @@ struct Compensated {
   T compensation;
 
   void add(const T& increment) {
-    const T corrected = compensation + increment;
-    const T sum = value + corrected;
-    const T represented = sum - value;
+    if constexpr (requires { increment.data(); }) {
+      // Of copies the compiler knows that they are apart.
+      T sums = value;
+      T rests = compensation;
+      for (int i = 0; i < increment.size(); ++i) {
+        add(increment.data()[i], sums.data()[i], rests.data()[i]);
+      }
+      value = sums;
+      compensation = rests;
+    } else {
+      add(increment, value, compensation);
+    }
+  }
+
+ private:
+  template <class Scalar>
+  static void add(const Scalar& increment, Scalar& value, Scalar& compensation) {
+    const Scalar corrected = compensation + increment;
+    const Scalar sum = value + corrected;
+    const Scalar represented = sum - value;
     compensation = corrected - represented;
     value = sum;
   }

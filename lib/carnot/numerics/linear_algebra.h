@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -34,8 +35,11 @@ Matrix<T, sizeof...(Entries), sizeof...(Entries)> diagonal(const Entries&... ent
   return a;
 }
 
-// Products as plain sums, without Eigen's expressions, which take the compiler several times as
-// long.
+// What follows, and the steps of methods (step/), are loops over entries. Eigen's expressions of
+// the same take the compiler several times as long: each of their types declares all that a matrix
+// can do, once more for every size and scalar.
+
+// a b.
 template <class A, class B>
 auto product(const A& a, const B& b) {
   using T = typename A::Scalar;
@@ -54,11 +58,115 @@ auto product(const A& a, const B& b) {
   return c;
 }
 
+// a' b.
+template <class A, class B>
+auto transposed_times(const A& a, const B& b) {
+  using T = typename A::Scalar;
+  constexpr int kRows = A::ColsAtCompileTime;
+  constexpr int kInner = A::RowsAtCompileTime;
+  constexpr int kCols = B::ColsAtCompileTime;
+  static_assert(kInner == B::RowsAtCompileTime && kInner > 0);
+  Matrix<T, kRows, kCols> c;
+  for (int i = 0; i < kRows; ++i) {
+    for (int j = 0; j < kCols; ++j) {
+      T sum = a(0, i) * b(0, j);
+      for (int k = 1; k < kInner; ++k) sum += a(k, i) * b(k, j);
+      c(i, j) = sum;
+    }
+  }
+  return c;
+}
+
+// a b'.
+template <class A, class B>
+auto times_transposed(const A& a, const B& b) {
+  using T = typename A::Scalar;
+  constexpr int kRows = A::RowsAtCompileTime;
+  constexpr int kInner = A::ColsAtCompileTime;
+  constexpr int kCols = B::RowsAtCompileTime;
+  static_assert(kInner == B::ColsAtCompileTime && kInner > 0);
+  Matrix<T, kRows, kCols> c;
+  for (int i = 0; i < kRows; ++i) {
+    for (int j = 0; j < kCols; ++j) {
+      T sum = a(i, 0) * b(j, 0);
+      for (int k = 1; k < kInner; ++k) sum += a(i, k) * b(j, k);
+      c(i, j) = sum;
+    }
+  }
+  return c;
+}
+
+// a += b and a -= b.
+template <class T, int rows, int cols>
+void add_to(Matrix<T, rows, cols>& a, const Matrix<T, rows, cols>& b) {
+  for (int j = 0; j < cols; ++j) {
+    for (int i = 0; i < rows; ++i) a(i, j) += b(i, j);
+  }
+}
+template <class T, int rows, int cols>
+void subtract_from(Matrix<T, rows, cols>& a, const Matrix<T, rows, cols>& b) {
+  for (int j = 0; j < cols; ++j) {
+    for (int i = 0; i < rows; ++i) a(i, j) -= b(i, j);
+  }
+}
+
+// A vector of one number, and a matrix of one.
+template <int n, class T>
+Vector<T, n> filled(const T& entry) {
+  Vector<T, n> x;
+  for (int i = 0; i < n; ++i) x[i] = entry;
+  return x;
+}
+template <int rows, int cols, class T>
+Matrix<T, rows, cols> filled(const T& entry) {
+  Matrix<T, rows, cols> a;
+  for (int j = 0; j < cols; ++j) {
+    for (int i = 0; i < rows; ++i) a(i, j) = entry;
+  }
+  return a;
+}
+
+// `count` entries of x from `first` on.
+template <int first, int count, class T, int n>
+Vector<T, count> part(const Vector<T, n>& x) {
+  static_assert(first >= 0 && first + count <= n);
+  Vector<T, count> some;
+  for (int i = 0; i < count; ++i) some[i] = x[first + i];
+  return some;
+}
+
 template <class T, int n>
 T dot(const Vector<T, n>& a, const Vector<T, n>& b) {
   T sum = a[0] * b[0];
   for (int i = 1; i < n; ++i) sum += a[i] * b[i];
   return sum;
+}
+
+// The absolute value of every entry.
+template <class T, int rows, int cols>
+Matrix<T, rows, cols> absolute(const Matrix<T, rows, cols>& a) {
+  using std::abs;
+  Matrix<T, rows, cols> sizes;
+  for (int j = 0; j < cols; ++j) {
+    for (int i = 0; i < rows; ++i) sizes(i, j) = abs(a(i, j));
+  }
+  return sizes;
+}
+
+// The largest absolute value of an entry; 0 where there is none. Not a number where an entry is
+// not.
+template <class A>
+auto largest_entry(const A& a) {
+  using std::abs;
+  using T = typename A::Scalar;
+  T largest(0);
+  for (int j = 0; j < a.cols(); ++j) {
+    for (int i = 0; i < a.rows(); ++i) {
+      const T size = abs(a(i, j));
+      if (size > largest || size != size) largest = size;
+    }
+  }
+  return largest;
 }
 
 // No entry is infinite or not a number: zero times it is zero.
@@ -72,14 +180,16 @@ bool all_finite(const Eigen::MatrixBase<Derived>& a) {
   return all(zero <= Number(0));
 }
 
-// A vector on somebody else's numbers.
+// Vectors and matrices from plain numbers and to them, in the order in which Eigen keeps them.
 template <int n>
-Eigen::Map<const Vector<double, n>> view(const double* x) {
-  return Eigen::Map<const Vector<double, n>>(x, n);
+Vector<double, n> vector_at(const double* x) {
+  Vector<double, n> copy;
+  for (int i = 0; i < n; ++i) copy[i] = x[i];
+  return copy;
 }
-template <int n>
-Eigen::Map<Vector<double, n>> view(double* x) {
-  return Eigen::Map<Vector<double, n>>(x, n);
+template <int rows, int cols>
+void store(const Matrix<double, rows, cols>& a, double* to) {
+  std::copy_n(a.data(), rows * cols, to);
 }
 
 // The numbers of a vector or matrix, in the order in which it keeps them.

@@ -66,6 +66,14 @@ struct Ops {
   static Lane abs(const Lane& x) { return xsimd::abs(x); }
   static Lane max(const Lane& a, const Lane& b) { return xsimd::max(a, b); }
   static Lane min(const Lane& a, const Lane& b) { return xsimd::min(a, b); }
+  // Later versions of xsimd have another name for it.
+  static double sum(const Lane& x) {
+    if constexpr (requires { reduce_add(x); }) {
+      return reduce_add(x);
+    } else {
+      return hadd(x);
+    }
+  }
   static double largest(const Lane& x) {
     std::array<double, kSize> lanes;
     store(x, lanes.data());
@@ -93,6 +101,7 @@ struct Ops<double> {
   static double max(double a, double b) { return a < b ? b : a; }
   static double min(double a, double b) { return b < a ? b : a; }
   static double largest(double x) { return x; }
+  static double sum(double x) { return x; }
 };
 
 }  // namespace pack_lane
@@ -293,11 +302,16 @@ class Pack {
     return each_number(a, [](double x) { return std::tanh(x); });
   }
 
-  // Over the lanes.
+  // Of the lanes.
   friend double largest(const Pack& a) {
     Lane most = a.part(0);
     for (int i = 1; i < kParts; ++i) most = Ops::max(most, a.part(i));
     return Ops::largest(most);
+  }
+  friend double sum(const Pack& a) {
+    Lane all = a.part(0);
+    for (int i = 1; i < kParts; ++i) all = all + a.part(i);
+    return Ops::sum(all);
   }
 
   friend Mask isfinite(const Pack& a) { return abs(a) <= Pack(std::numeric_limits<double>::max()); }

@@ -28,7 +28,8 @@ class PseudoInverse {
     static_cast<void>(orthogonalise_columns(row_count, count, w_.data(), v_.data()));
     T largest(0);
     for (int j = 0; j < count; ++j) {
-      square_[j] = w_.col(j).squaredNorm();
+      square_[j] = T(0);
+      for (int i = 0; i < row_count; ++i) square_[j] += w_(i, j) * w_(i, j);
       largest = std::max(largest, square_[j]);
     }
     const T round_off = T(row_count + count) * epsilon<T>();
@@ -47,24 +48,30 @@ class PseudoInverse {
   }
 
   // Of all x with the least |A x - b|, the one of least norm.
-  [[nodiscard]] Vector<T, cols> solve(const Vector<T, rows>& b) const {
-    Vector<T, cols> x = Vector<T, cols>::Zero(v_.rows());
-    for (int j = 0; j < square_.size(); ++j) {
-      if (square_[j] != T(0)) x += (w_.col(j).dot(b) / square_[j]) * v_.col(j);
-    }
-    return x;
-  }
+  [[nodiscard]] Vector<T, cols> solve(const Vector<T, rows>& b) const { return combine(w_, b, v_); }
 
   // Of all y with the least |A'y - c|, the one of least norm.
   [[nodiscard]] Vector<T, rows> solve_transposed(const Vector<T, cols>& c) const {
-    Vector<T, rows> y = Vector<T, rows>::Zero(w_.rows());
-    for (int j = 0; j < square_.size(); ++j) {
-      if (square_[j] != T(0)) y += (v_.col(j).dot(c) / square_[j]) * w_.col(j);
-    }
-    return y;
+    return combine(v_, c, w_);
   }
 
  private:
+  // sum_j to_j (from_j.b) / s_j^2, with a column for each j.
+  template <int in, int out>
+  Vector<T, out> combine(const Matrix<T, in, cols>& from,
+                         const Vector<T, in>& b,
+                         const Matrix<T, out, cols>& to) const {
+    Vector<T, out> sum(to.rows());
+    for (int i = 0; i < sum.size(); ++i) sum[i] = T(0);
+    for (int j = 0; j < square_.size(); ++j) {
+      if (square_[j] == T(0)) continue;
+      T along(0);
+      for (int i = 0; i < from.rows(); ++i) along += from(i, j) * b[i];
+      for (int i = 0; i < sum.size(); ++i) sum[i] += along / square_[j] * to(i, j);
+    }
+    return sum;
+  }
+
   Matrix<T, rows, cols> w_;
   Matrix<T, cols, cols> v_;
   Vector<T, cols> square_;  // s_j^2, zero where s_j is round-off

@@ -5,6 +5,7 @@
 // Jets a constant A is applied to each component of a right-hand side.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -35,7 +36,7 @@ class ScaledLu {
       }
       row_[j] = pivot;
       if (pivot != j) {
-        lu_.row(j).swap(lu_.row(pivot));
+        for (int k = 0; k < size; ++k) std::swap(lu_(j, k), lu_(pivot, k));
         determinant_ = -determinant_;
       }
       determinant_ *= lu_(j, j) / (scale_[j] * scale_[j]);
@@ -69,7 +70,8 @@ class ScaledLu {
       }
       return x;
     } else {
-      Column<T> x = b.cwiseProduct(scale_);
+      Column<T> x(size);
+      for (int i = 0; i < size; ++i) x[i] = b[i] * scale_[i];
       for (int i = 0; i < size; ++i) std::swap(x[i], x[row_[i]]);
       for (int i = 1; i < size; ++i) {
         for (int k = 0; k < i; ++k) x[i] -= lu_(i, k) * x[k];
@@ -78,7 +80,8 @@ class ScaledLu {
         for (int k = i + 1; k < size; ++k) x[i] -= lu_(i, k) * x[k];
         x[i] /= lu_(i, i);
       }
-      return x.cwiseProduct(scale_);
+      for (int i = 0; i < size; ++i) x[i] *= scale_[i];
+      return x;
     }
   }
 
@@ -88,17 +91,18 @@ class ScaledLu {
     using std::abs, std::sqrt;
     constexpr int kSweeps = 3;
     const int rows = static_cast<int>(lu_.rows());
-    scale_.setConstant(T(1));
+    for (int i = 0; i < rows; ++i) scale_[i] = T(1);
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
       Column<T> d(rows);
       for (int i = 0; i < rows; ++i) {
-        const T size = lu_.row(i).cwiseAbs().maxCoeff();
+        T size(0);
+        for (int j = 0; j < rows; ++j) size = std::max(size, abs(lu_(i, j)));
         d[i] = size > T(0) ? T(1) / sqrt(size) : T(1);
       }
       for (int i = 0; i < rows; ++i) {
         for (int j = 0; j < rows; ++j) lu_(i, j) *= d[i] * d[j];
       }
-      scale_ = scale_.cwiseProduct(d).eval();
+      for (int i = 0; i < rows; ++i) scale_[i] *= d[i];
     }
   }
 

@@ -1,6 +1,7 @@
 // The stages of a step side by side in packs: row k of a 2n x s array holds component k of all.
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "carnot/numerics/linear_algebra.h"
@@ -38,6 +39,20 @@ template <int size, int s>
     most = max(most, abs(combination<s>(columns, rows + k * s, Pack<s>(0))));
   }
   most.store(largest);
+}
+
+// The sum of each row.
+template <int size, int s>
+[[gnu::flatten, gnu::noinline]] void packed_sums(const double* rows, double* sums) {
+  for (int k = 0; k < size; ++k) sums[k] = sum(Pack<s>::load(rows + k * s));
+}
+
+// The largest sum of the absolute values in a row.
+template <int size, int s>
+[[gnu::flatten, gnu::noinline]] double packed_distance(const double* rows) {
+  double most = 0;
+  for (int k = 0; k < size; ++k) most = std::max(most, sum(abs(Pack<s>::load(rows + k * s))));
+  return most;
 }
 
 // One iteration on the tangents dL = A (dz + mu dL) of all stages: entry (r, c) of A is row

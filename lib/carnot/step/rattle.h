@@ -19,6 +19,7 @@
 // to the manifold first (holonomic.h).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 
@@ -45,9 +46,11 @@ class Rattle {
   // mu_ij = 1 for j < i, 0 for j > i.
   Rattle(const System& system, const Tableau<T>& tableau) : system_(system), tableau_(tableau) {
     assert(composes_midpoints(tableau));
-    stages_ = Stages::Zero(kSize, tableau.stages());
-    increments_ = stages_;
-    start_on(Algebraic::Zero());
+    stages_.resize(kSize, tableau.stages());
+    increments_.resize(kSize, tableau.stages());
+    std::fill_n(stages_.data(), stages_.size(), T(0));
+    std::fill_n(increments_.data(), increments_.size(), T(0));
+    start_on(filled<System::kAlgebraic>(T(0)));
   }
   Rattle(const System& system, Tableau<T>&& tableau) = delete;  // would dangle
 
@@ -66,7 +69,7 @@ class Rattle {
   // the calls on Jets, one or a few per substep.
   [[nodiscard]] StepReport step(const T& t, const T& h, State<T, kDof>& z) {
     StepReport report;
-    if (!z.value.allFinite()) {
+    if (!all_finite(z.value)) {
       fail(RateStatus::kNotFinite, report);
       return report;
     }
@@ -95,6 +98,7 @@ class Rattle {
   [[nodiscard]] const System& system() const { return system_; }
   [[nodiscard]] const Tableau<T>& tableau() const { return tableau_; }
   [[nodiscard]] const Stages& stages() const { return stages_; }
+  [[nodiscard]] Point stage(int i) const { return Point(stages_.data() + kSize * i); }
   [[nodiscard]] const Stages& increments() const { return increments_; }
   [[nodiscard]] Algebraic algebraic(int i) const { return algebraic_[i]; }
   [[nodiscard]] T stage_time(int i) const { return start_time_ + tableau_.c[i] * last_step_; }
@@ -135,7 +139,7 @@ class Rattle {
     if (node_known_ && node_.z == z.value) return;
     node_known_ = false;
     node_.z = z.value;
-    node_.force.setZero();
+    node_.force = filled<kHolonomic>(T(0));
     const RateStatus status = phase_rate(system_, t, node_.z, node_.algebraic, node_.rate);
     ++report.evaluations;
     if (status != RateStatus::kOk) return fail(status, report);
@@ -146,8 +150,8 @@ class Rattle {
   void linearise(const T& t, const Point& z, StepReport& report) {
     const RateStatus status = phase_jacobian(system_, t, z, node_.algebraic, node_.jacobian);
     if (status != RateStatus::kOk) return fail(status, report);
-    node_.dh = holonomic_jacobian(system_.scene(), Vector<T, kDof>(z.template head<kDof>()));
-    const Matrix<T, kDof, kDof> h_pp = node_.jacobian.template topRightCorner<kDof, kDof>();
+    node_.dh = holonomic_jacobian(system_.scene(), part<0, kDof>(z));
+    const Matrix<T, kDof, kDof> h_pp = momentum_hessian<kDof>(node_.jacobian);
     if (!invert_normal_mass(node_.dh, h_pp, node_.inverse)) {
       fail(RateStatus::kConstraintRank, report);
     }
@@ -156,15 +160,17 @@ class Rattle {
   void substep(int i, const T& t, const T& step, State<T, kDof>& z, StepReport& report) {
     const T h = step * tableau_.b[i];
     if (!midpoint_.solve(system_, node_, t + tableau_.c[i] * step, h, z, report)) return;
-    stages_.col(i) = midpoint_.point();
-    increments_.col(i) = midpoint_.increment();
+    for (int k = 0; k < kSize; ++k) {
+      stages_(k, i) = midpoint_.point()[k];
+      increments_(k, i) = midpoint_.increment()[k];
+    }
     algebraic_[i] = midpoint_.algebraic();
     impulse_before_[i] = midpoint_.impulse();
     Point change = midpoint_.increment();
     apply_impulse(node_.dh, midpoint_.impulse(), change);
     z.add(change);
     finish(i, t + node_fraction(i + 1) * step, z, report);
-    node_.force = (T(2) / h) * impulse_after_[i];
+    for (int k = 0; k < kHolonomic; ++k) node_.force[k] = T(2) / h * impulse_after_[i][k];
   }
 
   // The impulse after, and the node that it leads to. df/dz is taken where nu0, close to nu1,
@@ -174,7 +180,7 @@ class Rattle {
     nu = impulse_before_[i];
     node_.algebraic = algebraic_[i];
     Point guess = z.value;
-    const Vector<T, kDof> q = z.value.template head<kDof>();
+    const Vector<T, kDof> q = part<0, kDof>(z.value);
     apply_impulse(holonomic_jacobian(system_.scene(), q), nu, guess);
     linearise(t, guess, report);
     if (report.status != StepStatus::kOk) return;

@@ -85,11 +85,11 @@ class RattleMidpoint {
         find_correction(system, node, z);
         size = correction_size();
       }
-      if (!correction_.allFinite()) return false;
+      if (!all_finite(correction_)) return false;
       last = size;
       smallest = std::min(smallest, size);
-      u_ += correction_.template head<kSize>();
-      impulse_ += correction_.template tail<kHolonomic>();
+      for (int i = 0; i < kSize; ++i) u_[i] += correction_[i];
+      for (int i = 0; i < kHolonomic; ++i) impulse_[i] += correction_[kSize + i];
       if (!evaluate(system, t, h, z, report)) return false;
     }
     return false;
@@ -128,8 +128,9 @@ class RattleMidpoint {
   using Unknowns = Vector<T, kUnknowns>;
 
   void first_guess(const Node& node, const T& h, const State<T, kDof>& z) {
-    impulse_ = (h / T(2)) * node.force;
-    u_ = z.value + (h / T(2)) * node.rate;
+    const T half = h / T(2);
+    for (int i = 0; i < kHolonomic; ++i) impulse_[i] = half * node.force[i];
+    for (int i = 0; i < kSize; ++i) u_[i] = z.value[i] + half * node.rate[i];
     apply_impulse(node.dh, impulse_, u_);
     algebraic_ = node.algebraic;
   }
@@ -150,14 +151,15 @@ class RattleMidpoint {
       report.rate = status;
       return false;
     }
-    increment_ = h * f;
+    for (int i = 0; i < kSize; ++i) increment_[i] = h * f[i];
     for (int i = 0; i < kDof; ++i) q1_[i] = z.value[i] + (z.compensation[i] + increment_[i]);
     return true;
   }
 
   // (dU, dnu) by the inverse matrix at hand.
   void find_correction(const System& system, const Node& node, const State<T, kDof>& z) {
-    Point moved = z.compensation + increment_ / T(2);
+    Point moved;
+    for (int i = 0; i < kSize; ++i) moved[i] = z.compensation[i] + increment_[i] / T(2);
     apply_impulse(node.dh, impulse_, moved);
     const Vector<T, kHolonomic> h = system.scene().holonomic(q1_);
     Unknowns residual;
@@ -203,17 +205,18 @@ class RattleMidpoint {
     for (int i = 0; i < kUnknowns; ++i) inverse_[i * kUnknowns + i] = T(1);
     if (!lu_solve(kUnknowns, matrix_.data(), kUnknowns, inverse_.data())) return false;
     using std::abs;
-    Unknowns noise;
-    noise.setConstant(z.value.cwiseAbs().maxCoeff() + u_.cwiseAbs().maxCoeff());
+    Unknowns noise = filled<kUnknowns>(largest_entry(z.value) + largest_entry(u_));
     for (int i = 0; i < kHolonomic; ++i) {
-      noise[kSize + i] = dh1_.row(i).cwiseAbs().sum() * q1_.cwiseAbs().maxCoeff();
+      T sum(0);
+      for (int j = 0; j < kDof; ++j) sum += abs(dh1_(i, j));
+      noise[kSize + i] = sum * largest_entry(q1_);
     }
     for (int i = 0; i < kUnknowns; ++i) {
       T sum = std::numeric_limits<T>::min();  // never zero
       for (int j = 0; j < kUnknowns; ++j) sum += abs(inverse_[i * kUnknowns + j]) * noise[j];
       resolution_[i] = epsilon<T>() * sum;
     }
-    return resolution_.allFinite();
+    return all_finite(resolution_);
   }
 
   // In units of the resolution.

@@ -49,7 +49,7 @@ class Tangent<Rattle<System_, T_>> {
   using Columns = Matrix<T, n, kSize>;
 
   static Vector<T, n> configuration(const Step& step, int node) {
-    return step.node(node).template head<n>();
+    return part<0, n>(step.node(node));
   }
 
   // Notes why it is not.
@@ -62,8 +62,10 @@ class Tangent<Rattle<System_, T_>> {
   // The second derivative of nu.h at a node.
   static Matrix<T, n, n> bend(const Step& step, int node, const Vector<T, l>& nu) {
     const auto hessians = holonomic_hessians(step.system().scene(), configuration(step, node));
-    Matrix<T, n, n> sum = nu[0] * hessians[0];
-    for (int i = 1; i < l; ++i) sum += nu[i] * hessians[i];
+    Matrix<T, n, n> sum = filled<n, n>(T(0));
+    for (int i = 0; i < l; ++i) {
+      for (int k = 0; k < n * n; ++k) sum.data()[k] += nu[i] * hessians[i].data()[k];
+    }
     return sum;
   }
 
@@ -72,17 +74,14 @@ class Tangent<Rattle<System_, T_>> {
     const auto& scene = step.system().scene();
     const T h = step.last_step() * step.tableau().b[i];
     Square a;
-    if (!sound(phase_jacobian(step.system(),
-                              step.stage_time(i),
-                              Vector<T, kSize>(step.stages().col(i)),
-                              step.algebraic(i),
-                              a))) {
+    if (!sound(phase_jacobian(
+            step.system(), step.stage_time(i), step.stage(i), step.algebraic(i), a))) {
       return false;
     }
     const Matrix<T, l, n> dh0 = holonomic_jacobian(scene, configuration(step, i));
     const Matrix<T, l, n> dh1 = holonomic_jacobian(scene, configuration(step, i + 1));
-    const Square start = m.value + m.compensation;
-    const Columns dq0 = start.template topRows<n>();
+    const Square start = sum_of(m);
+    const Columns dq0 = upper_half(start);
     const Columns kick = product(bend(step, i, step.impulse_before(i)), dq0);
     const Matrix<T, l, kSize> turned = product(dh1, dq0);
     for (int j = 0; j < kSize; ++j) {
@@ -97,9 +96,13 @@ class Tangent<Rattle<System_, T_>> {
       for (int r = 0; r < kSize; ++r) du(r, j) = at(r, j);
       for (int r = 0; r < l; ++r) dnu(r, j) = at(kSize + r, j);
     }
-    Square increment = h * product(a, du);
-    increment.template bottomRows<n>() -= kick + product(dh0.transpose(), dnu);
-    if (!increment.allFinite()) return false;
+    Square increment = product(a, du);
+    const Columns impulse = transposed_times(dh0, dnu);
+    for (int j = 0; j < kSize; ++j) {
+      for (int r = 0; r < kSize; ++r) increment(r, j) *= h;
+      for (int r = 0; r < n; ++r) increment(n + r, j) -= kick(r, j) + impulse(r, j);
+    }
+    if (!all_finite(increment)) return false;
     m.add(increment);
     return true;
   }
@@ -114,23 +117,41 @@ class Tangent<Rattle<System_, T_>> {
     const T t = step.node_time(i + 1);
     if (!sound(phase_rate(step.system(), t, step.node(i + 1), y, rate))) return false;
     if (!sound(phase_jacobian(step.system(), t, step.node(i + 1), y, jacobian))) return false;
-    const Vector<T, n> v = rate.template head<n>();
+    const Vector<T, n> v = part<0, n>(rate);
     const Matrix<T, l, kSize> hidden = hidden_jacobian(scene, q, v, jacobian);
     const Matrix<T, l, n> dh = holonomic_jacobian(scene, q);
     Matrix<T, l, l> inverse;
-    const Matrix<T, n, n> h_pp = jacobian.template topRightCorner<n, n>();
+    const Matrix<T, n, n> h_pp = momentum_hessian<n>(jacobian);
     if (!invert_normal_mass(dh, h_pp, inverse)) return false;
 
-    Square moved = m.value + m.compensation;
-    const Columns dq = moved.template topRows<n>();
+    Square moved = sum_of(m);
+    const Columns dq = upper_half(moved);
     const Columns kick = product(bend(step, i + 1, step.impulse_after(i)), dq);
-    moved.template bottomRows<n>() -= kick;
+    for (int j = 0; j < kSize; ++j) {
+      for (int r = 0; r < n; ++r) moved(n + r, j) -= kick(r, j);
+    }
     const Matrix<T, l, kSize> violated = product(hidden, moved);
     const Matrix<T, l, kSize> dnu = product(inverse, violated);
-    Square increment = Square::Zero();
-    increment.template bottomRows<n>() = -kick - product(dh.transpose(), dnu);
+    const Columns impulse = transposed_times(dh, dnu);
+    Square increment = filled<kSize, kSize>(T(0));
+    for (int j = 0; j < kSize; ++j) {
+      for (int r = 0; r < n; ++r) increment(n + r, j) = -kick(r, j) - impulse(r, j);
+    }
     m.add(increment);
     return true;
+  }
+
+  static Square sum_of(const Compensated<Square>& m) {
+    Square sum = m.value;
+    add_to(sum, m.compensation);
+    return sum;
+  }
+  static Columns upper_half(const Square& m) {
+    Columns half;
+    for (int j = 0; j < kSize; ++j) {
+      for (int r = 0; r < n; ++r) half(r, j) = m(r, j);
+    }
+    return half;
   }
 
   T& at(int i, int j) { return solution_[i * kSize + j]; }
@@ -150,21 +171,30 @@ template <HolonomicSystem System, class T>
                                       Matrix<T, 2 * System::kDof, 2 * System::kDof>& projector) {
   constexpr int n = System::kDof;
   constexpr int l = kHolonomicOf<System>;
-  Vector<T, System::kAlgebraic> y = Vector<T, System::kAlgebraic>::Zero();
+  Vector<T, System::kAlgebraic> y = filled<System::kAlgebraic>(T(0));
   Vector<T, 2 * n> rate;
   Matrix<T, 2 * n, 2 * n> jacobian;
   if (phase_rate(system, t, z, y, rate) != RateStatus::kOk) return false;
   if (phase_jacobian(system, t, z, y, jacobian) != RateStatus::kOk) return false;
-  const Vector<T, n> q = z.template head<n>();
-  const Vector<T, n> v = rate.template head<n>();
-  Matrix<T, 2 * l, 2 * n> c = Matrix<T, 2 * l, 2 * n>::Zero();
-  c.template topLeftCorner<l, n>() = holonomic_jacobian(system.scene(), q);
-  c.template bottomRows<l>() = hidden_jacobian(system.scene(), q, v, jacobian);
+  const Vector<T, n> q = part<0, n>(z);
+  const Vector<T, n> v = part<0, n>(rate);
+  const Matrix<T, l, n> dh = holonomic_jacobian(system.scene(), q);
+  const Matrix<T, l, 2 * n> hidden = hidden_jacobian(system.scene(), q, v, jacobian);
+  Matrix<T, 2 * l, 2 * n> c;
+  for (int i = 0; i < l; ++i) {
+    for (int j = 0; j < 2 * n; ++j) {
+      c(i, j) = j < n ? dh(i, j) : T(0);
+      c(l + i, j) = hidden(i, j);
+    }
+  }
   Matrix<T, 2 * l, 2 * l> inverse;
-  projector.setIdentity();
+  for (int i = 0; i < 2 * n; ++i) {
+    for (int j = 0; j < 2 * n; ++j) projector(i, j) = T(i == j ? 1 : 0);
+  }
   if (!invert_normal_mass(c, projector, inverse)) return false;
   const Matrix<T, 2 * l, 2 * n> dual = product(inverse, c);
-  projector -= product(c.transpose(), dual);
+  const Matrix<T, 2 * n, 2 * n> normal = transposed_times(c, dual);
+  subtract_from(projector, normal);
   return true;
 }
 

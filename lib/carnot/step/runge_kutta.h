@@ -94,7 +94,7 @@ class RungeKutta {
     }
     State<T, kDof> end = z;
     if (report.status == StepStatus::kOk) {
-      end.add(sum_of_increments(work_.tableau, work_.increments));
+      end.add(work_.update());
       if (!all_finite(end.value)) (void)work_.fail(RateStatus::kNotFinite, report);
     }
     if (report.status != StepStatus::kOk) {
@@ -113,6 +113,7 @@ class RungeKutta {
   [[nodiscard]] const System& system() const { return work_.system; }
   [[nodiscard]] const Tableau<T, s>& tableau() const { return work_.tableau; }
   [[nodiscard]] const Stages& stages() const { return work_.stages; }
+  [[nodiscard]] Point stage(int i) const { return work_.stage(i); }
   [[nodiscard]] const Stages& increments() const { return work_.increments; }
   [[nodiscard]] Algebraic algebraic(int i) const { return work_.algebraic(i); }
   [[nodiscard]] const auto& algebraic() const { return work_.all_algebraic; }
@@ -189,7 +190,9 @@ class RungeKutta {
         if (change != nullptr) change[i] = moved;
         if (!(moved <= most)) most = moved;
       }
-      for (int j = block.begin(); j < block.end(); ++j) work_.stages.col(j) = next.col(j);
+      for (int j = block.begin(); j < block.end(); ++j) {
+        for (int i = 0; i < kSize; ++i) work_.stages(i, j) = next(i, j);
+      }
       return work_.evaluate_all(block, report) ? most : std::numeric_limits<T>::quiet_NaN();
     };
     return iterate_stages<T, kSize>(limits, sweep, [&] { return work_.scale_of(block); }) ==

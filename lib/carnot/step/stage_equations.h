@@ -1,6 +1,7 @@
 // The equations of the stages, U_i = z + e + sum_j mu_ij L_j, and their linearization.
 //
-// Columns of the matrices belong to stages. Notation: tableau.h, runge_kutta.h.
+// Columns of the matrices belong to stages. Notation: tableau.h, runge_kutta.h. Loops over entries:
+// see linear_algebra.h.
 #pragma once
 
 #include <array>
@@ -17,13 +18,18 @@ void stage_arguments(const Tableau<T, s>& tableau,
                      const Stages& increments,
                      const Compensated<Vector<T, n>>& z,
                      Stages& u) {
-  u = increments.lazyProduct(tableau.mu.transpose());
-  if (tableau.partitioned) {
-    u.template bottomRows<n / 2>() =
-        increments.template bottomRows<n / 2>().lazyProduct(tableau.mu_p.transpose());
+  const int count = static_cast<int>(increments.cols());
+  for (int i = 0; i < count; ++i) {
+    std::array<T, n> sum;
+    sum.fill(T(0));
+    for (int j = 0; j < count; ++j) {
+      const T mu = tableau.mu(i, j);
+      const T momentum_mu = tableau.momentum_mu(i, j);
+      for (int k = 0; k < n / 2; ++k) sum[k] += mu * increments(k, j);
+      for (int k = n / 2; k < n; ++k) sum[k] += momentum_mu * increments(k, j);
+    }
+    for (int k = 0; k < n; ++k) u(k, i) = sum[k] + z.compensation[k] + z.value[k];
   }
-  u.colwise() += z.compensation;
-  u.colwise() += z.value;
 }
 
 // U_i from the increments up to L_i. Those after it are not of this step.
@@ -32,22 +38,28 @@ Vector<T, n> stage_argument(const Tableau<T, s>& tableau,
                             const Stages& increments,
                             const Compensated<Vector<T, n>>& z,
                             int i) {
-  Vector<T, n> sum = z.compensation;
+  std::array<T, n> sum;
+  for (int k = 0; k < n; ++k) sum[k] = z.compensation[k];
   for (int j = 0; j <= i; ++j) {
-    if (tableau.mu(i, j) != T(0)) sum += tableau.mu(i, j) * increments.col(j);
+    const T mu = tableau.mu(i, j);
+    if (mu == T(0)) continue;
+    for (int k = 0; k < n; ++k) sum[k] += mu * increments(k, j);
   }
-  return sum + z.value;
+  for (int k = 0; k < n; ++k) sum[k] += z.value[k];
+  return Vector<T, n>(sum.data());
 }
 
 // sum_j u_j L_j, by which z moves.
 template <class T, int s, class Stages>
 auto sum_of_increments(const Tableau<T, s>& tableau, const Stages& increments) {
-  using Sum = Vector<T, Stages::RowsAtCompileTime>;
-  if constexpr (s == kAnyStages) {
-    return Sum(increments.lazyProduct(tableau.update));
-  } else {
-    return Sum(increments.rowwise().sum());
+  constexpr int n = Stages::RowsAtCompileTime;
+  std::array<T, n> sum;
+  sum.fill(T(0));
+  for (int j = 0; j < increments.cols(); ++j) {
+    const T update = tableau.update[j];
+    for (int k = 0; k < n; ++k) sum[k] += update * increments(k, j);
   }
+  return Vector<T, n>(sum.data());
 }
 
 // The matrix I - mu_ij h omega_j df/dz(U_j) of up to `most` coupled stages, in blocks, row-major.

@@ -31,7 +31,8 @@ class StageNewton {
     prepared_ = true;
     if (!suited_ || !begin(work, block, report)) return false;
     const int count = block.end() - block.begin();
-    Point mean = Point::Zero();
+    Point mean;
+    for (int i = 0; i < size; ++i) mean[i] = T(0);
     for (int j = block.begin(); j < block.end(); ++j) {
       for (int i = 0; i < size; ++i) mean[i] += work.stages(i, j) / T(count);
     }
@@ -53,7 +54,7 @@ class StageNewton {
         Square a;
         const T time = block.t + work.tableau.c[j] * block.h;
         if (!work.evaluate(block, j, report)) return false;
-        if (!jacobian(work, time, work.stages.col(j), j, report, a)) return false;
+        if (!jacobian(work, time, work.stage(j), j, report, a)) return false;
         const T weight = block.h * work.tableau.omega[j];
         system_.set_column(work.tableau, block.begin(), block.end(), j, weight, a);
       }

@@ -1,7 +1,7 @@
 // The stages of one step, as Newton's method and the fixed-point iteration share them: where they
 // are kept, how they are guessed and how they are evaluated.
 //
-// Notation: tableau.h, runge_kutta.h.
+// Notation: tableau.h, runge_kutta.h. Loops over entries: see linear_algebra.h.
 #pragma once
 
 #include <algorithm>
@@ -50,15 +50,17 @@ struct StageWorkspace {
   };
 
   StageWorkspace(const System& of, const Tableau<T, s>& method) : system(of), tableau(method) {
-    stages = Stages::Zero(kSize, tableau.c.size());
-    increments = stages;
+    stages.resize(kSize, tableau.c.size());
+    increments.resize(kSize, tableau.c.size());
+    std::fill_n(stages.data(), stages.size(), T(0));
+    std::fill_n(increments.data(), increments.size(), T(0));
     all_algebraic.resize(System::kAlgebraic, tableau.c.size());
     start_on(Algebraic::Zero());
   }
 
   // The branch of H_y = 0 to begin with.
   void start_on(const Algebraic& y) {
-    if constexpr (System::kAlgebraic > 0) all_algebraic.colwise() = y;
+    for (int i = 0; i < all_algebraic.cols(); ++i) set_algebraic(i, y);
     branch = y;
   }
 
@@ -76,14 +78,17 @@ struct StageWorkspace {
     return false;
   }
 
+  // U_i.
+  [[nodiscard]] Point stage(int i) const {
+    Point u;
+    for (int k = 0; k < kSize; ++k) u[k] = stages(k, i);
+    return u;
+  }
   // y_i.
   [[nodiscard]] Algebraic algebraic(int i) const {
-    // Where there are none, Eigen does not know how many columns there are.
-    if constexpr (System::kAlgebraic == 0) {
-      return {};
-    } else {
-      return all_algebraic.col(i);
-    }
+    Algebraic y;
+    for (int k = 0; k < System::kAlgebraic; ++k) y[k] = all_algebraic(k, i);
+    return y;
   }
 
   // U of the block from the increments.
@@ -91,14 +96,15 @@ struct StageWorkspace {
     if (coupled()) {
       stage_arguments(tableau, increments, block.z, u);
     } else if constexpr (s == kAnyStages) {
-      u.col(block.first) = stage_argument(tableau, increments, block.z, block.first);
+      const Point argument = stage_argument(tableau, increments, block.z, block.first);
+      for (int k = 0; k < kSize; ++k) u(k, block.first) = argument[k];
     }
   }
 
   // y_i and L_i at U_i.
   bool evaluate(const Block& block, int i, StepReport& report) {
     const T time = block.t + tableau.c[i] * block.h;
-    const Point u = stages.col(i);
+    const Point u = stage(i);
     Point f;
     Algebraic y = algebraic(i);
     const RateStatus rate = phase_rate(system, time, u, y, f);
@@ -106,7 +112,7 @@ struct StageWorkspace {
     if (rate != RateStatus::kOk) return fail(rate, report);
     report.rate = rate;
     set_algebraic(i, y);
-    increments.col(i) = (block.h * tableau.omega[i]) * f;
+    set_increment(i, block.h * tableau.omega[i], f);
     return true;
   }
 
@@ -133,7 +139,8 @@ struct StageWorkspace {
       const double* const t = time.data();
       if (!packed_columns(system, t, first, count, stages, all_algebraic, increments)) return false;
       for (int i = first; i < first + count; ++i) {
-        increments.col(i) *= block.h * tableau.omega[i];
+        const T weight = block.h * tableau.omega[i];
+        for (int k = 0; k < kSize; ++k) increments(k, i) *= weight;
       }
       report.evaluations += count;
     }
@@ -141,11 +148,26 @@ struct StageWorkspace {
     return true;
   }
 
+  // By which z moves.
+  [[nodiscard]] Point update() const {
+    if constexpr (kRows) {
+      Point sums;
+      packed_sums<kSize, s>(increments.data(), sums.data());
+      return sums;
+    } else {
+      return sum_of_increments(tableau, increments);
+    }
+  }
+
   // y of the stage before: for stages that are found one after the other.
   void warm_start(int i) { set_algebraic(i, i == 0 ? branch : algebraic(i - 1)); }
 
   void set_algebraic(int i, const Algebraic& y) {
-    if constexpr (System::kAlgebraic > 0) all_algebraic.col(i) = y;
+    for (int k = 0; k < System::kAlgebraic; ++k) all_algebraic(k, i) = y[k];
+  }
+  // L_i = weight f.
+  void set_increment(int i, const T& weight, const Point& f) {
+    for (int k = 0; k < kSize; ++k) increments(k, i) = weight * f[k];
   }
 
   // First guess of the increments: from the last step, where this one repeats its length, or from
@@ -156,7 +178,7 @@ struct StageWorkspace {
       if constexpr (kRows) {
         packed_extrapolation<kSize, s>(extrapolation->data(), increments.data());
       } else {
-        increments = Stages(increments.lazyProduct(extrapolation->transpose()));
+        extrapolate();
       }
       return true;
     }
@@ -164,8 +186,22 @@ struct StageWorkspace {
     warm_start(i);
     if (i == 0 && !repeated) return constant_guess(block, report);
     const int before = i == 0 ? tableau.stages() - 1 : i - 1;
-    increments.col(i) = (tableau.omega[i] / tableau.omega[before]) * increments.col(before);
+    const T ratio = tableau.omega[i] / tableau.omega[before];
+    for (int k = 0; k < kSize; ++k) increments(k, i) = ratio * increments(k, before);
     return true;
+  }
+
+  void extrapolate() {
+    const Stages last = increments;
+    for (int i = 0; i < last.cols(); ++i) {
+      std::array<T, kSize> sum;
+      sum.fill(T(0));
+      for (int j = 0; j < last.cols(); ++j) {
+        const T weight = (*extrapolation)(i, j);
+        for (int k = 0; k < kSize; ++k) sum[k] += weight * last(k, j);
+      }
+      for (int k = 0; k < kSize; ++k) increments(k, i) = sum[k];
+    }
   }
 
   // The rate at the start of the step, for every stage of the block.
@@ -177,7 +213,7 @@ struct StageWorkspace {
     if (rate != RateStatus::kOk) return fail(rate, report);
     for (int i = block.begin(); i < block.end(); ++i) {
       set_algebraic(i, y);
-      increments.col(i) = (block.h * tableau.omega[i]) * f;
+      set_increment(i, block.h * tableau.omega[i], f);
     }
     return true;
   }

@@ -9,9 +9,13 @@
 // where that does not contract; the others one after the other. A_i is symmetric after
 // multiplication with J, so dz+ is symplectic exactly when mu_ij + mu_p_ji = 1. Cost: s rates on
 // Jets with 2n directions and about ten products of 2n x 2n matrices per stage.
+//
+// Loops over entries: see linear_algebra.h.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -46,10 +50,10 @@ class Tangent {
       if (!(coupled ? iterate(step, repeated, m) || solve(step, m) : solve_in_turn(step, m))) {
         return false;
       }
-      sum = step.tableau().update[0] * increment_[0];
-      for (int i = 1; i < count_; ++i) sum += step.tableau().update[i] * increment_[i];
+      set_zero(sum);
+      for (int i = 0; i < count_; ++i) add(step.tableau().update[i], increment_[i], sum);
     }
-    if (!sum.allFinite()) return false;
+    if (!all_finite(sum)) return false;
     if (packed_step_ == T(0)) plain_step_ = h;
     m.add(sum);
     moved_ = sum;
@@ -60,21 +64,36 @@ class Tangent {
 
  private:
   static constexpr int kMaxIterations = 60;
+  static constexpr int kEntries = kSize * kSize;
+
+  static void set_zero(Square& a) { std::fill_n(a.data(), kEntries, T(0)); }
+  // b += weight a.
+  static void add(const T& weight, const Square& a, Square& b) {
+    for (int k = 0; k < kEntries; ++k) b.data()[k] += weight * a.data()[k];
+  }
+  // c = a b, which is neither of them.
+  static void multiply(const Square& a, const Square& b, Square& c) {
+    for (int j = 0; j < kSize; ++j) {
+      std::array<T, kSize> column;
+      column.fill(T(0));
+      for (int k = 0; k < kSize; ++k) {
+        for (int i = 0; i < kSize; ++i) column[i] += a(i, k) * b(k, j);
+      }
+      for (int i = 0; i < kSize; ++i) c(i, j) = column[i];
+    }
+  }
 
   // A_i of all stages.
   bool linearize(const Step& step) {
     for (int i = 0; i < count_; ++i) {
-      const RateStatus status = phase_jacobian(step.system(),
-                                               step.stage_time(i),
-                                               Vector<T, kSize>(step.stages().col(i)),
-                                               step.algebraic(i),
-                                               jacobian_[i]);
+      const RateStatus status = phase_jacobian(
+          step.system(), step.stage_time(i), step.stage(i), step.algebraic(i), jacobian_[i]);
       if (status != RateStatus::kOk) {
         failure_ = status;
         return false;
       }
       const T weight = step.last_step() * step.tableau().omega[i];
-      jacobian_[i] = weight * jacobian_[i];
+      for (int k = 0; k < kEntries; ++k) jacobian_[i].data()[k] *= weight;
     }
     return true;
   }
@@ -110,11 +129,8 @@ class Tangent {
                                               weights_.data(),
                                               tangents_.data());
       };
-      using Rows = Eigen::Matrix<T, kSize * kSize, s, Eigen::RowMajor>;
       const auto add_up = [&](Square& to) {
-        const Vector<T, kSize* kSize> total =
-            Eigen::Map<const Rows>(tangents_.data()).rowwise().sum();
-        to = Eigen::Map<const Square>(total.data());
+        packed_sums<kEntries, s>(tangents_.data(), to.data());
       };
       if (!repeated) {
         sweep();
@@ -123,7 +139,7 @@ class Tangent {
       weigh(m);
       if (!settles(sweep)) return false;
       add_up(sum);
-      return sum.allFinite();
+      return all_finite(sum);
     }
   }
 
@@ -132,12 +148,17 @@ class Tangent {
   // that move: the others are without error, and in other units they may be as large as you like.
   void weigh(const Compensated<Square>& m) {
     constexpr T kResolution = std::numeric_limits<T>::epsilon();
-    const auto values = m.value.cwiseAbs();
-    const auto moved = moved_.cwiseAbs();
-    const auto moving = values.cwiseMin(moved / kResolution).cwiseMax(moved);
-    const Matrix<T, 1, kSize> sizes = moving.colwise().maxCoeff();
+    using std::abs;
     for (int c = 0; c < kSize; ++c) {
-      const T size = sizes[c] > T(0) ? sizes[c] : values.col(c).maxCoeff();
+      T moving(0);
+      T largest(0);
+      for (int r = 0; r < kSize; ++r) {
+        const T value = abs(m.value(r, c));
+        const T moved = abs(moved_(r, c));
+        moving = std::max(moving, std::max(std::min(value, moved / kResolution), moved));
+        largest = std::max(largest, value);
+      }
+      const T size = moving > T(0) ? moving : largest;
       weights_[c] = size > T(0) ? T(1) / (kResolution * size) : T(0);
     }
   }
@@ -166,10 +187,7 @@ class Tangent {
   // sum += mu_ij dL_j.
   static void add_stage(const Step& step, int i, int j, const Square& increment, Square& sum) {
     const T mu = step.tableau().mu(i, j);
-    if (!step.tableau().partitioned) {
-      sum += mu * increment;
-      return;
-    }
+    if (!step.tableau().partitioned) return add(mu, increment, sum);
     const T momentum_mu = step.tableau().mu_p(i, j);
     for (int c = 0; c < kSize; ++c) {
       for (int r = 0; r < kDof; ++r) sum(r, c) += mu * increment(r, c);
@@ -180,18 +198,18 @@ class Tangent {
   // First guess, as for the stages: extrapolated from the last step, or A_i dz.
   void predict(const Step& step, bool repeated, const Compensated<Square>& m) {
     if (!repeated) {
-      moved_.setZero();
+      set_zero(moved_);
       for (int i = 0; i < count_; ++i) {
-        increment_[i] = jacobian_[i].lazyProduct(m.value);
-        moved_ += increment_[i];
+        multiply(jacobian_[i], m.value, increment_[i]);
+        add(T(1), increment_[i], moved_);
       }
       return;
     }
     std::swap(increment_, last_);
     for (int i = 0; i < count_; ++i) {
-      increment_[i] = step.tableau().extrapolation(i, 0) * last_[0];
-      for (int j = 1; j < count_; ++j) {
-        increment_[i] += step.tableau().extrapolation(i, j) * last_[j];
+      set_zero(increment_[i]);
+      for (int j = 0; j < count_; ++j) {
+        add(step.tableau().extrapolation(i, j), last_[j], increment_[i]);
       }
     }
   }
@@ -200,16 +218,20 @@ class Tangent {
     predict(step, repeated, m);
     weigh(m);
     return settles([&] {
+      using std::abs;
       T change(0);
       std::swap(increment_, last_);
       for (int i = 0; i < count_; ++i) {
         Square argument = m.compensation;
         for (int j = 0; j < count_; ++j) add_stage(step, i, j, last_[j], argument);
-        argument += m.value;
-        increment_[i] = jacobian_[i].lazyProduct(argument);
+        add(T(1), m.value, argument);
+        multiply(jacobian_[i], argument, increment_[i]);
         for (int c = 0; c < kSize; ++c) {
-          const T moved =
-              weights_[c] * (increment_[i].col(c) - last_[i].col(c)).cwiseAbs().maxCoeff();
+          T away(0);
+          for (int r = 0; r < kSize; ++r) {
+            away = std::max(away, abs(increment_[i](r, c) - last_[i](r, c)));
+          }
+          const T moved = weights_[c] * away;
           if (!(moved <= change)) change = moved;  // NaN, too
         }
       }
@@ -219,11 +241,9 @@ class Tangent {
 
   // (I - A_i mu_ij) dL = A_i dz, all stages at once.
   bool solve(const Step& step, const Compensated<Square>& m) {
-    Square sizes = jacobian_[0].cwiseAbs();
-    for (int i = 1; i < count_; ++i) sizes += jacobian_[i].cwiseAbs();
-    units_ = balanced_units(sizes);
+    set_units(0, count_);
     for (int i = 0; i < count_; ++i) {
-      increment_[i] = jacobian_[i].lazyProduct(m.value);
+      multiply(jacobian_[i], m.value, increment_[i]);
       set_rhs(i, increment_[i]);
       for (int j = 0; j < count_; ++j) set_block(step, i, j, i, j, count_);
     }
@@ -235,15 +255,26 @@ class Tangent {
     for (int i = 0; i < count_; ++i) {
       Square argument = m.compensation;
       for (int j = 0; j < i; ++j) add_stage(step, i, j, increment_[j], argument);
-      argument += m.value;
-      increment_[i] = jacobian_[i].lazyProduct(argument);
+      add(T(1), m.value, argument);
+      multiply(jacobian_[i], argument, increment_[i]);
       if (step.tableau().coupling == Coupling::kExplicit) continue;
-      units_ = balanced_units(Square(jacobian_[i].cwiseAbs()));
+      set_units(i, i + 1);
       set_rhs(0, increment_[i]);
       set_block(step, i, i, 0, 0, 1);
       if (!lu(i, 1)) return false;
     }
     return true;
+  }
+
+  // Those of the matrices of some stages together.
+  void set_units(int first, int end) {
+    using std::abs;
+    Square sizes;
+    set_zero(sizes);
+    for (int i = first; i < end; ++i) {
+      for (int k = 0; k < kEntries; ++k) sizes.data()[k] += abs(jacobian_[i].data()[k]);
+    }
+    units_ = balanced_units(sizes);
   }
 
   // Block `block` of the right-hand sides, in units_ as the matrix and the solution: which pivots
@@ -276,7 +307,7 @@ class Tangent {
       for (int r = 0; r < kSize; ++r) {
         for (int c = 0; c < kSize; ++c) increment_[i](r, c) = *from++ * units_[r];
       }
-      finite = finite && increment_[i].allFinite();
+      finite = finite && all_finite(increment_[i]);
     }
     return finite;
   }

@@ -40,7 +40,8 @@ class ErasedSystem {
   [[nodiscard]] int multiplier_count() const { return functions_->multipliers; }
   // The solution y that a run begins with.
   [[nodiscard]] Algebraic branch() const {
-    Algebraic y = Algebraic::Zero();
+    Algebraic y;
+    std::fill_n(y.data(), kAlgebraic, 0.0);
     functions_->branch(system_, y.data());
     return y;
   }
@@ -76,12 +77,13 @@ class ErasedSystem {
                                 Algebraic& y,
                                 Rate<double, n>& out) const {
     Point z;
-    z << q, p;
+    std::copy_n(q.data(), n, z.data());
+    std::copy_n(p.data(), n, z.data() + n);
     Point z_dot;
     const RateStatus status = phase_rate(t, z, y, z_dot);
     if (status != RateStatus::kOk) return status;
-    out.q_dot = z_dot.template head<n>();
-    out.p_dot = z_dot.template tail<n>();
+    std::copy_n(z_dot.data(), n, out.q_dot.data());
+    std::copy_n(z_dot.data() + n, n, out.p_dot.data());
     return status;
   }
   [[nodiscard]] double hamiltonian(double t,

@@ -45,8 +45,8 @@ struct LegendreTransform {
                               const Vector<T, kDof>& q,
                               const Vector<T, kDof>& v,
                               const Vector<T, kAlgebraic>& x) const {
-    const Vector<T, kDof> p = x.template head<kDof>();
-    Vector<T, System::kAlgebraic> y = x.template tail<System::kAlgebraic>();
+    const Vector<T, kDof> p = part<0, kDof>(x);
+    Vector<T, System::kAlgebraic> y = part<kDof, System::kAlgebraic>(x);
     T sum = -dot(p, v);
     if (held != nullptr) {
       for (int i = 0; i < System::kAlgebraic; ++i) {
@@ -152,7 +152,7 @@ class GeneralizedHamiltonian {
   template <class T>
   [[nodiscard]] Vector<T, kMultipliers> constraint(const Vector<T, kDof>& /*q*/,
                                                    const Vector<T, kDof>& /*v*/) const {
-    return Vector<T, kMultipliers>::Constant(constant<T>(0));
+    return filled<kMultipliers>(constant<T>(0));
   }
 
   // NaN: no metric.
@@ -173,17 +173,18 @@ class GeneralizedHamiltonian {
     constexpr double kRegular = 1e8;  // at this condition half of the digits are left
     LegendreTransform<GeneralizedHamiltonian> transform{*this};
     Vector<double, kDof + kAlgebraic> x;
-    x << v, lambda;
+    for (int i = 0; i < kDof; ++i) x[i] = v[i];
+    for (int i = 0; i < kMultipliers; ++i) x[kDof + i] = lambda[i];
     const bool regular = stationary_regularity(transform, t, q, v, x).condition < kRegular;
     if (!regular) transform.held = &lambda;
     bool found = stationary_solve(transform, t, q, v, x) == RateStatus::kOk;
-    if (!found) x.setZero();  // no start at all
+    if (!found) x = filled<kDof + kAlgebraic>(0.0);  // no start at all
     found = found || stationary_solve(transform, t, q, v, x) == RateStatus::kOk;
-    p = x.template head<kDof>();
+    p = part<0, kDof>(x);
     double violated = 0;
     if (found && !regular) found = admissible_velocity(t, q, p, lambda, v, violated);
     if (found) return violated;
-    v.setConstant(std::numeric_limits<double>::quiet_NaN());
+    v = filled<kDof>(std::numeric_limits<double>::quiet_NaN());
     return std::numeric_limits<double>::quiet_NaN();
   }
 
@@ -238,7 +239,7 @@ class GeneralizedHamiltonian {
   // Most matrices of interest are sparse.
   template <class T>
   static Vector<T, kSize> apply(const Square& matrix, const Vector<T, kSize>& x) {
-    Vector<T, kSize> result = Vector<T, kSize>::Constant(constant<T>(0));
+    Vector<T, kSize> result = filled<kSize>(constant<T>(0));
     for (int j = 0; j < kSize; ++j) {
       for (int i = 0; i < kSize; ++i) {
         if (matrix(i, j) != 0) result[i] += scaled(x[j], matrix(i, j));
@@ -292,22 +293,24 @@ class GeneralizedHamiltonian {
     using J = Jet<double, kSize>;
     using Equations = StationaryEquations<GeneralizedHamiltonian, double>;
     const Vector<J, kSize> x = seeded(apply(inverse_, z));
-    const Vector<J, kAlgebraic> rows =
-        Equations::derivative(*this,
-                              J(0),
-                              Vector<J, kDof>(x.template head<kDof>()),
-                              Vector<J, kDof>(x.template segment<kDof>(kDof)),
-                              Vector<J, kAlgebraic>(x.template tail<kAlgebraic>()));
-    for (int i = 0; i < kAlgebraic; ++i) derivatives.row(i) = rows[i].v.transpose();
-    return derivatives.allFinite();
+    const Vector<J, kAlgebraic> rows = Equations::derivative(
+        *this, J(0), part<0, kDof>(x), part<kDof, kDof>(x), part<2 * kDof, kAlgebraic>(x));
+    for (int i = 0; i < kAlgebraic; ++i) {
+      for (int j = 0; j < kSize; ++j) derivatives(i, j) = rows[i].v[j];
+    }
+    return all_finite(derivatives);
   }
 
   // Whether H_yy is regular, its round-off set to zero. The columns of T for y are exact to a few
   // eps, so that a derivative in y has as much of the other derivatives in it.
   static bool regular_in_kernel(const Matrix<double, kAlgebraic, kSize>& derivatives) {
     constexpr double kRoundOff = kRankTolerance * kSize * std::numeric_limits<double>::epsilon();
-    Matrix<double, kAlgebraic, kAlgebraic> hessian = derivatives.template rightCols<kAlgebraic>();
-    const Vector<double, kAlgebraic> size = derivatives.cwiseAbs().rowwise().sum();
+    Matrix<double, kAlgebraic, kAlgebraic> hessian;
+    Vector<double, kAlgebraic> size = filled<kAlgebraic>(0.0);
+    for (int i = 0; i < kAlgebraic; ++i) {
+      for (int j = 0; j < kSize; ++j) size[i] += std::abs(derivatives(i, j));
+      for (int j = 0; j < kAlgebraic; ++j) hessian(i, j) = derivatives(i, 2 * kDof + j);
+    }
     for (int i = 0; i < kAlgebraic; ++i) {
       for (int j = 0; j < kAlgebraic; ++j) {
         if (std::abs(hessian(i, j)) <= kRoundOff * (size[i] + size[j])) hessian(i, j) = 0;

@@ -41,7 +41,9 @@ Matrix<T, Scene::kHolonomic, Scene::kDof> holonomic_jacobian(const Scene& scene,
                                                              const Vector<T, Scene::kDof>& q) {
   const Vector<Jet<T, Scene::kDof>, Scene::kHolonomic> h = scene.holonomic(seeded(q));
   Matrix<T, Scene::kHolonomic, Scene::kDof> jacobian;
-  for (int i = 0; i < Scene::kHolonomic; ++i) jacobian.row(i) = h[i].v.transpose();
+  for (int i = 0; i < Scene::kHolonomic; ++i) {
+    for (int j = 0; j < Scene::kDof; ++j) jacobian(i, j) = h[i].v[j];
+  }
   return jacobian;
 }
 
@@ -53,7 +55,9 @@ std::array<Matrix<T, Scene::kDof, Scene::kDof>, Scene::kHolonomic> holonomic_hes
   const Vector<J, Scene::kHolonomic> h = scene.holonomic(seeded(seeded(q)));
   std::array<Matrix<T, Scene::kDof, Scene::kDof>, Scene::kHolonomic> hessians;
   for (int i = 0; i < Scene::kHolonomic; ++i) {
-    for (int j = 0; j < Scene::kDof; ++j) hessians[i].row(j) = h[i].v[j].v.transpose();
+    for (int j = 0; j < Scene::kDof; ++j) {
+      for (int k = 0; k < Scene::kDof; ++k) hessians[i](j, k) = h[i].v[j].v[k];
+    }
   }
   return hessians;
 }
@@ -62,7 +66,7 @@ std::array<Matrix<T, Scene::kDof, Scene::kDof>, Scene::kHolonomic> holonomic_hes
 template <class Scene, class T>
 T holonomic_residual(const Scene& scene, const Vector<T, Scene::kDof>& q) {
   const Vector<T, Scene::kHolonomic> h = scene.holonomic(q);
-  return h.cwiseAbs().maxCoeff();
+  return largest_entry(h);
 }
 
 // max |Dh(q) v|.
@@ -71,7 +75,17 @@ T hidden_residual(const Scene& scene,
                   const Vector<T, Scene::kDof>& q,
                   const Vector<T, Scene::kDof>& v) {
   const Vector<T, Scene::kHolonomic> rate = product(holonomic_jacobian(scene, q), v);
-  return rate.cwiseAbs().maxCoeff();
+  return largest_entry(rate);
+}
+
+// H_pp, which is a part of df/dz.
+template <int n, class T>
+Matrix<T, n, n> momentum_hessian(const Matrix<T, 2 * n, 2 * n>& jacobian) {
+  Matrix<T, n, n> h_pp;
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) h_pp(i, j) = jacobian(i, n + j);
+  }
+  return h_pp;
 }
 
 // p <- p - Dh' nu in z = (q, p).
@@ -90,15 +104,19 @@ template <class T, int l, int n>
                                       Matrix<T, l, l>& inverse) {
   const Matrix<T, l, n> weighted = product(dh, h_pp);
   // Symmetric: row by row or column by column is the same.
-  Matrix<T, l, l> s = product(weighted, dh.transpose());
-  inverse.setIdentity();
+  Matrix<T, l, l> s = times_transposed(weighted, dh);
+  for (int i = 0; i < l; ++i) {
+    for (int j = 0; j < l; ++j) inverse(i, j) = T(i == j ? 1 : 0);
+  }
   if (!lu_solve(l, s.data(), l, inverse.data())) return false;
   // For a positive S, 1 / (S^-1)_ii is the part of row i that the other rows leave.
-  const T least = T(64 * n) * epsilon<T>() * h_pp.cwiseAbs().maxCoeff();
+  const T least = T(64 * n) * epsilon<T>() * largest_entry(h_pp);
   for (int i = 0; i < l; ++i) {
-    if (!(inverse(i, i) * least * dh.row(i).squaredNorm() < T(1))) return false;
+    T square(0);
+    for (int j = 0; j < n; ++j) square += dh(i, j) * dh(i, j);
+    if (!(inverse(i, i) * least * square < T(1))) return false;
   }
-  return inverse.allFinite();
+  return all_finite(inverse);
 }
 
 // nu with Dh H_p(q, p - Dh' nu) = 0 by Newton's method with one matrix, from the nu on entry:
@@ -120,30 +138,31 @@ template <class System, class T>
   constexpr int l = kHolonomicOf<System>;
   constexpr int kMaxIterations = 50;
   const State<T, n> start = z;
-  const Matrix<T, n, l> lever = product(dh.transpose(), inverse);
+  const Matrix<T, n, l> lever = transposed_times(dh, inverse);
   T smallest = std::numeric_limits<T>::max();
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-    Vector<T, 2 * n> impulse = Vector<T, 2 * n>::Zero();
+    Vector<T, 2 * n> impulse = filled<2 * n>(T(0));
     apply_impulse(dh, nu, impulse);
     z = start;
     z.add(impulse);
     const RateStatus status = phase_rate(system, t, z.value, y, z_dot);
     ++evaluations;
     if (status != RateStatus::kOk) return status;
-    const Vector<T, n> v = z_dot.template head<n>();
+    const Vector<T, n> v = part<0, n>(z_dot);
     const Vector<T, l> violated = product(dh, v);
     // The change of p, and what the roundings of p and of the sum Dh v make of it.
-    const T change = product(lever, violated).cwiseAbs().maxCoeff();
-    const Vector<T, l> terms = product(dh.cwiseAbs(), v.cwiseAbs());
-    const T rounding = std::max(z.value.template tail<n>().cwiseAbs().maxCoeff(),
-                                product(lever.cwiseAbs(), terms).maxCoeff());
+    const T change = largest_entry(product(lever, violated));
+    const Vector<T, l> terms = product(absolute(dh), absolute(v));
+    const T rounding = std::max(largest_entry(part<n, n>(z.value)),
+                                largest_entry(product(absolute(lever), terms)));
     const T resolution = epsilon<T>() * rounding;
     if (change <= resolution) return RateStatus::kOk;
     if (!(change < smallest)) {
       return change <= T(kStalledRoundOff) * resolution ? RateStatus::kOk : RateStatus::kNoSolution;
     }
     smallest = change;
-    nu += product(inverse, violated);
+    const Vector<T, l> step = product(inverse, violated);
+    add_to(nu, step);
   }
   return RateStatus::kNoSolution;
 }
@@ -158,7 +177,7 @@ template <HolonomicSystem System, class T>
   constexpr int n = System::kDof;
   constexpr int l = kHolonomicOf<System>;
   State<T, n> z = make_state<T, n>(q, p);
-  Vector<T, System::kAlgebraic> y = Vector<T, System::kAlgebraic>::Zero();
+  Vector<T, System::kAlgebraic> y = filled<System::kAlgebraic>(T(0));
   Vector<T, 2 * n> z_dot;
   RateStatus status = phase_rate(system, t, z.value, y, z_dot);
   if (status != RateStatus::kOk) return status;
@@ -167,12 +186,12 @@ template <HolonomicSystem System, class T>
   if (status != RateStatus::kOk) return status;
   const Matrix<T, l, n> dh = holonomic_jacobian(system.scene(), q);
   Matrix<T, l, l> inverse;
-  const Matrix<T, n, n> h_pp = jacobian.template topRightCorner<n, n>();
+  const Matrix<T, n, n> h_pp = momentum_hessian<n>(jacobian);
   if (!invert_normal_mass(dh, h_pp, inverse)) return RateStatus::kConstraintRank;
-  Vector<T, l> nu = Vector<T, l>::Zero();
+  Vector<T, l> nu = filled<l>(T(0));
   int evaluations = 0;
   status = solve_hidden_constraint(system, t, dh, inverse, z, nu, y, z_dot, evaluations);
-  if (status == RateStatus::kOk) p = z.value.template tail<n>();
+  if (status == RateStatus::kOk) p = part<n, n>(z.value);
   return status;
 }
 
@@ -188,20 +207,23 @@ template <class Scene, class T>
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     const Matrix<T, l, n> dh = holonomic_jacobian(scene, x);
     Matrix<T, l, l> inverse;
-    const Matrix<T, n, n> identity = Matrix<T, n, n>::Identity();
+    Matrix<T, n, n> identity;
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) identity(i, j) = T(i == j ? 1 : 0);
+    }
     if (!invert_normal_mass(dh, identity, inverse)) return false;
     const Vector<T, l> h = scene.holonomic(x);
     const Vector<T, l> multipliers = product(inverse, h);
-    const Vector<T, n> correction = product(dh.transpose(), multipliers);
-    const T change = correction.cwiseAbs().maxCoeff();
-    const T resolution = epsilon<T>() * x.cwiseAbs().maxCoeff();
+    const Vector<T, n> correction = transposed_times(dh, multipliers);
+    const T change = largest_entry(correction);
+    const T resolution = epsilon<T>() * largest_entry(x);
     if (change <= resolution ||
         (!(change < smallest) && change <= T(kStalledRoundOff) * resolution)) {
       q = x;
       return true;
     }
     smallest = std::min(smallest, change);
-    x -= correction;
+    subtract_from(x, correction);
   }
   return false;
 }

@@ -62,7 +62,7 @@ class LagrangianSystem {
                               const Vector<T, kDof>& q,
                               const Vector<T, kDof>& p,
                               const Vector<T, kAlgebraic>& y) const {
-    const Vector<T, kDof> v = y.template head<kDof>();
+    const Vector<T, kDof> v = part<0, kDof>(y);
     T h = dot(p, v) - lagrangian(t, q, v);
     const Vector<T, kMultipliers> g = constraint(q, v);
     for (int i = 0; i < kMultipliers; ++i) h += y[kDof + i] * g[i];
@@ -85,8 +85,9 @@ class LagrangianSystem {
                                 const Vector<T, kDof>& q,
                                 const Vector<T, kDof>& p) const
       -> AlgebraicOf<decltype(std::declval<const S&>().velocity_guess(t, q, p))> {
-    Vector<T, kAlgebraic> y = Vector<T, kAlgebraic>::Constant(T(0));
-    y.template head<kDof>() = scene_.velocity_guess(t, q, p);
+    Vector<T, kAlgebraic> y = filled<kAlgebraic>(T(0));
+    const Vector<T, kDof> guess = scene_.velocity_guess(t, q, p);
+    for (int i = 0; i < kDof; ++i) y[i] = guess[i];
     return y;
   }
 
@@ -96,7 +97,7 @@ class LagrangianSystem {
                                        const Vector<T, kDof>& /*p*/,
                                        const Vector<T, kAlgebraic>& y,
                                        Vector<T, kMultipliers>& lambda) const {
-    lambda = y.template tail<kMultipliers>();
+    lambda = part<kDof, kMultipliers>(y);
     return RateStatus::kOk;
   }
 
@@ -138,18 +139,18 @@ class LagrangianSystem {
         Vector<T, kMultipliers> g;
         Matrix<T, kMultipliers, kDof> rows;
         linearize_constraint(q, x, g, rows);
-        if (!(g.allFinite() && rows.allFinite())) return RateStatus::kNotFinite;
-        if ((g.array() == T(0)).all()) {
+        if (!(all_finite(g) && all_finite(rows))) return RateStatus::kNotFinite;
+        if (largest_entry(g) == T(0)) {
           v = x;
           return RateStatus::kOk;
         }
         const Matrix<T, kMultipliers, kDof> weighted = weighed(masses, rows);
-        const Matrix<T, kMultipliers, kMultipliers> gram = product(weighted, rows.transpose());
+        const Matrix<T, kMultipliers, kMultipliers> gram = times_transposed(weighted, rows);
         const Cholesky<T, kMultipliers> factor(gram);
         if (!factor.positive()) return RateStatus::kConstraintRank;
-        const Vector<T, kDof> step = -product(weighted.transpose(), factor.solve(g));
+        const Vector<T, kDof> step = transposed_times(weighted, factor.solve(g));
         const T size = mass_norm(masses, step);
-        x += step;
+        subtract_from(x, step);
         // At round-off, or as near to it as the rounding of g allows.
         const T few = resolution * mass_norm(masses, x);
         if (size <= few || (size <= T(16) * few && size >= last)) {
@@ -171,7 +172,7 @@ class LagrangianSystem {
                                       const Vector<T, kMultipliers>& lambda,
                                       Vector<T, kDof>& p) const {
     const Vector<T, kDof> given = v;
-    if (project(t, q, v) != RateStatus::kOk) v.setConstant(std::numeric_limits<T>::quiet_NaN());
+    if (project(t, q, v) != RateStatus::kOk) v = filled<kDof>(std::numeric_limits<T>::quiet_NaN());
     p = momentum(t, q, v, lambda);
     return relative_move(counted_masses(t, q, given), given, v);
   }
@@ -198,13 +199,15 @@ class LagrangianSystem {
     if (result == RateStatus::kOk) y = found;
     if constexpr (kMultipliers > 0) {
       const auto distance = [&lambda](const Vector<double, kAlgebraic>& x) {
-        return (x.template tail<kMultipliers>() - lambda).cwiseAbs().maxCoeff();
+        Vector<double, kMultipliers> away = part<kDof, kMultipliers>(x);
+        subtract_from(away, lambda);
+        return largest_entry(away);
       };
       constexpr double kInfinity = std::numeric_limits<double>::infinity();
       double nearest = result == RateStatus::kOk ? distance(y) : kInfinity;
       const auto search = [&](const Vector<double, kMultipliers>& centre) {
         constexpr std::array kOffsets{0.0, 0.01, -0.01, 0.1, -0.1, 0.3, -0.3, 1.0, -1.0, 3.0, -3.0};
-        const double size = 1 + centre.cwiseAbs().maxCoeff();
+        const double size = 1 + largest_entry(centre);
         for (int moved = 0; moved < kMultipliers; ++moved) {
           for (const double offset : kOffsets) {
             Vector<double, kMultipliers> start = centre;
@@ -218,7 +221,7 @@ class LagrangianSystem {
           }
         }
       };
-      const Vector<double, kMultipliers> cold = found.template tail<kMultipliers>();
+      const Vector<double, kMultipliers> cold = part<kDof, kMultipliers>(found);
       const bool cold_found = result == RateStatus::kOk;
       search(lambda);
       if (cold_found) search(cold);
@@ -258,7 +261,7 @@ class LagrangianSystem {
                                 const Vector<T, kDof>& p,
                                 const Vector<T, kDof>& v) const {
       Vector<T, kDof + kMultipliers> y;
-      y.template head<kDof>() = v;
+      for (int i = 0; i < kDof; ++i) y[i] = v[i];
       for (int i = 0; i < kMultipliers; ++i) y[kDof + i] = constant<T>(lambda[i]);
       return system.hamiltonian(t, q, p, y);
     }
@@ -275,7 +278,8 @@ class LagrangianSystem {
     Vector<double, kDof> v;
     const RateStatus status = stationary_cold_start(legendre, v);
     if (status != RateStatus::kOk) return status;
-    y << v, lambda;
+    for (int i = 0; i < kDof; ++i) y[i] = v[i];
+    for (int i = 0; i < kMultipliers; ++i) y[kDof + i] = lambda[i];
     return StationaryNewton(equations).solve(Pursuit::kAny, y);
   }
 
@@ -289,7 +293,7 @@ class LagrangianSystem {
     const Vector<J, kMultipliers> gj = constraint(unseeded<J>(q), seeded(v));
     for (int i = 0; i < kMultipliers; ++i) {
       g[i] = gj[i].a;
-      rows.row(i) = gj[i].v.transpose();
+      for (int j = 0; j < kDof; ++j) rows(i, j) = gj[i].v[j];
     }
   }
 

@@ -43,7 +43,7 @@ T relative_constraint(const System& system, const Vector<T, n>& q, const Vector<
     return T(0);
   } else {
     const Vector<T, System::kMultipliers> g = system.constraint(q, v);
-    return g.norm() / std::max(T(1), v.cwiseAbs().maxCoeff());
+    return g.norm() / std::max(T(1), largest_entry(v));
   }
 }
 
@@ -51,7 +51,7 @@ T relative_constraint(const System& system, const Vector<T, n>& q, const Vector<
 template <class System, class T, int n>
 T holonomic_error(const System& system, const Vector<T, n>& q, const Vector<T, n>& v) {
   if constexpr (HolonomicSystem<System>) {
-    const T size = std::max(T(1), v.cwiseAbs().maxCoeff());
+    const T size = std::max(T(1), largest_entry(v));
     const T hidden = hidden_residual(system.scene(), q, v) / size;
     return std::max(holonomic_residual(system.scene(), q), hidden);
   } else {

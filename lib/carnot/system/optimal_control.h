@@ -143,19 +143,22 @@ class OptimalControl {
                                       const Vector<T, 0>& /*lambda*/,
                                       Vector<T, kDof>& p) const {
     const Vector<T, kDof> wanted = v;
-    const Vector<T, kControls> none = Vector<T, kControls>::Zero();
+    const Vector<T, kControls> none = filled<kControls>(T(0));
     bool found = regular_chart(scene_, q);
     if constexpr (HasLinearControls<Scene>) {
       const Matrix<T, kDof, kControls> frame = orthonormal_frame(q);
       const PseudoInverse<T, kDof, kControls> inverse(frame);
       const Vector<T, kDof> drift = dynamics(t, q, none);
-      const Vector<T, kControls> w = inverse.solve(Vector<T, kDof>(wanted - drift));
-      v = drift + product(frame, w);
+      Vector<T, kDof> controlled = wanted;
+      subtract_from(controlled, drift);
+      const Vector<T, kControls> w = inverse.solve(controlled);
+      v = product(frame, w);
+      add_to(v, drift);
       p = inverse.solve_transposed(w);
     } else {
       found = found && general_momentum(t, q, v, p);
     }
-    if (!found) v.setConstant(std::numeric_limits<T>::quiet_NaN());
+    if (!found) v = filled<kDof>(std::numeric_limits<T>::quiet_NaN());
     const T violated = (wanted - v).norm();
     const T scale = std::max(wanted.norm(), dynamics(t, q, none).norm());
     return violated == T(0) ? violated : T(violated / scale);
@@ -188,7 +191,7 @@ class OptimalControl {
                                        Vector<T, kControls>& u,
                                        Rate<T, kDof>& out) const {
     const Matrix<T, kDof, kControls> frame = scene_.frame(q);
-    u = product(frame.transpose(), p);
+    u = transposed_times(frame, p);
     if constexpr (HasControlWeight<Scene>) {
       const Matrix<T, kControls, kControls> weight = scene_.control_weight(q);
       const Cholesky<T, kControls> factor(weight);
@@ -200,12 +203,15 @@ class OptimalControl {
     out.q_dot = product(frame, u);
     if constexpr (HasDrift<Scene>) out.q_dot += scene_.drift(q);
     if constexpr (HasControlGradient<Scene>) {
-      out.p_dot = -scene_.frame_gradient(q, p, u);
+      const Vector<T, kDof> slope = scene_.frame_gradient(q, p, u);
+      for (int i = 0; i < kDof; ++i) out.p_dot[i] = -slope[i];
     } else {
       using J = Jet<T, kDof>;
       const Vector<J, kDof> pj = unseeded<J>(p);
       const Vector<J, kControls> uj = unseeded<J>(u);
-      out.p_dot = -gradient([&](const auto& x) { return hamiltonian(J(t), x, pj, uj); }, q);
+      const Vector<T, kDof> slope =
+          gradient([&](const auto& x) { return hamiltonian(J(t), x, pj, uj); }, q);
+      for (int i = 0; i < kDof; ++i) out.p_dot[i] = -slope[i];
     }
     return status_of(out);
   }
@@ -221,11 +227,13 @@ class OptimalControl {
       Vector<T, kControls> pivots;
       const bool positive =
           cholesky_factor(Matrix<T, kControls, kControls>(scene_.control_weight(q)), lower, pivots);
-      if (!positive) pivots.setConstant(std::numeric_limits<T>::quiet_NaN());
-      for (int j = 0; j < kControls; ++j) {
-        for (int k = 0; k < j; ++k) b.col(j) -= lower(j, k) * b.col(k);
+      if (!positive) pivots = filled<kControls>(std::numeric_limits<T>::quiet_NaN());
+      for (int i = 0; i < kDof; ++i) {
+        for (int j = 0; j < kControls; ++j) {
+          for (int k = 0; k < j; ++k) b(i, j) -= lower(j, k) * b(i, k);
+        }
+        for (int j = 0; j < kControls; ++j) b(i, j) /= sqrt(pivots[j]);
       }
-      for (int j = 0; j < kControls; ++j) b.col(j) /= sqrt(pivots[j]);
     }
     return b;
   }
@@ -238,7 +246,9 @@ class OptimalControl {
     using J = Jet<T, kControls>;
     const Vector<J, kDof> f = dynamics(J(t), unseeded<J>(q), seeded(u));
     Matrix<T, kDof, kControls> jacobian;
-    for (int i = 0; i < kDof; ++i) jacobian.row(i) = f[i].v.transpose();
+    for (int i = 0; i < kDof; ++i) {
+      for (int j = 0; j < kControls; ++j) jacobian(i, j) = f[i].v[j];
+    }
     return jacobian;
   }
 
@@ -252,7 +262,7 @@ class OptimalControl {
     constexpr int kMaxIterations = 50;
     constexpr int kMaxHalvings = 30;
     const Vector<T, kDof> wanted = v;
-    Vector<T, kControls> u = Vector<T, kControls>::Zero();
+    Vector<T, kControls> u = filled<kControls>(T(0));
     if constexpr (HasInitialControls<Scene>) u = cold_start(t, q, v);
     v = dynamics(t, q, u);
     bool falling = true;
@@ -275,7 +285,8 @@ class OptimalControl {
         [&](const auto& x) { return running_cost(J(t), Vector<J, kDof>(unseeded<J>(q)), x); }, u);
     const Matrix<T, kDof, kControls> jacobian = control_jacobian(t, q, u);
     p = PseudoInverse<T, kDof, kControls>(jacobian).solve_transposed(slope);
-    const Vector<T, kControls> rest = jacobian.transpose() * p - slope;
+    Vector<T, kControls> rest = transposed_times(jacobian, p);
+    subtract_from(rest, slope);
     return rest.norm() <= sqrt(epsilon<T>()) * slope.norm();
   }
 

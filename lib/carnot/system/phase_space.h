@@ -13,8 +13,12 @@ using State = Compensated<Vector<T, 2 * n>>;
 
 template <class T, int n>
 State<T, n> make_state(const Vector<T, n>& q, const Vector<T, n>& p) {
-  State<T, n> z{Vector<T, 2 * n>::Zero(), Vector<T, 2 * n>::Zero()};
-  z.value << q, p;
+  State<T, n> z;
+  for (int i = 0; i < n; ++i) {
+    z.value[i] = q[i];
+    z.value[n + i] = p[i];
+    z.compensation[i] = z.compensation[n + i] = T(0);
+  }
   return z;
 }
 

@@ -9,6 +9,7 @@
 // the implicit function, two those of second order on nested Jets.
 #pragma once
 
+#include <cmath>
 #include <limits>
 
 #include "carnot/numerics/gradient.h"
@@ -65,7 +66,8 @@ template <class System, class T>
         Vector<T, m> r = Equations::derivative(system, t, q, p, y);
         // The values are solved already: their rounding shall not move them.
         for (int i = 0; i < m; ++i) r[i] -= constant<T>(value_of(r[i]));
-        y -= factor.solve(r);
+        const Vector<T, m> step = factor.solve(r);
+        subtract_from(y, step);
       }
     }
   }
@@ -76,10 +78,7 @@ template <class System, class T>
     z[n + i] = p[i];
   }
   const Vector<J, 2 * n> zj = seeded(z);
-  const J h = system.hamiltonian(J(t),
-                                 Vector<J, n>(zj.template head<n>()),
-                                 Vector<J, n>(zj.template tail<n>()),
-                                 unseeded<J>(y));
+  const J h = system.hamiltonian(J(t), part<0, n>(zj), part<n, n>(zj), unseeded<J>(y));
   for (int i = 0; i < n; ++i) {
     out.q_dot[i] = h.v[n + i];
     out.p_dot[i] = -h.v[i];
@@ -105,12 +104,21 @@ template <class System>
     const ScaledLu<double, m> factor(a);
     Matrix<double, m, m> inverse;
     for (int i = 0; i < m; ++i) {
-      inverse.col(i) = factor.solve(Vector<double, m>(Vector<double, m>::Unit(i)));
+      Vector<double, m> column = filled<m>(0.0);
+      column[i] = 1;
+      column = factor.solve(column);
+      for (int j = 0; j < m; ++j) inverse(j, i) = column[j];
     }
-    const auto norm = [](const auto& x) { return x.cwiseAbs().colwise().sum().maxCoeff(); };
+    const auto norm = [](const auto& x) {
+      Vector<double, m> sums = filled<m>(0.0);
+      for (int j = 0; j < m; ++j) {
+        for (int i = 0; i < m; ++i) sums[j] += std::abs(x(i, j));
+      }
+      return largest_entry(sums);
+    };
     regularity.determinant = factor.determinant();
     regularity.condition =
-        inverse.allFinite() ? norm(a) * norm(inverse) : std::numeric_limits<double>::infinity();
+        all_finite(inverse) ? norm(a) * norm(inverse) : std::numeric_limits<double>::infinity();
   }
   return regularity;
 }

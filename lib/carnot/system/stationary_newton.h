@@ -13,6 +13,7 @@
 // invariance, restricted monotonicity).
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <cstdint>
@@ -88,22 +89,26 @@ struct StationaryEquations {
   // How much H_y(y) moves when the last bits of q, p and y do: what its own rounding may be.
   [[nodiscard]] Vector<T, m> noise(const Vector<T, m>& y) const {
     const Vector<T, m> here = residual(y);
-    Vector<T, m> sum = Vector<T, m>::Constant(T(0));
+    Vector<T, m> sum = filled<m>(T(0));
+    const auto add_change = [&](const Vector<T, m>& moved) {
+      using std::abs;
+      for (int i = 0; i < m; ++i) sum[i] += abs(moved[i] - here[i]);
+    };
     for (const int few : {-7, -3, 4, 9}) {
       const T bits = T(1) + T(few) * epsilon<T>();
       StationaryEquations near = *this;
       for (int i = 0; i < n; ++i) {
         near.q[i] = bits * q[i];
-        sum += (near.residual(y) - here).cwiseAbs();
+        add_change(near.residual(y));
         near.q[i] = q[i];
         near.p[i] = bits * p[i];
-        sum += (near.residual(y) - here).cwiseAbs();
+        add_change(near.residual(y));
         near.p[i] = p[i];
       }
       Vector<T, m> moved = y;
       for (int i = 0; i < m; ++i) {
         moved[i] = bits * y[i];
-        sum += (residual(moved) - here).cwiseAbs();
+        add_change(residual(moved));
         moved[i] = y[i];
       }
     }
@@ -142,11 +147,11 @@ class StationaryNewton {
   // From y; on failure y is unchanged.
   [[nodiscard]] RateStatus solve(Pursuit pursuit, Unknowns& y) {
     x_ = y;
-    step_.setConstant(std::numeric_limits<T>::max());
+    fill(step_, std::numeric_limits<T>::max());
     last_length_ = T(1);
     singular_solution_ = false;
     equations_.linearize(x_, residual_, hessian_);
-    if (!(residual_.allFinite() && hessian_.allFinite())) return RateStatus::kNotFinite;
+    if (!(all_finite(residual_) && all_finite(hessian_))) return RateStatus::kNotFinite;
     Factor factor(hessian_);
     const T first_determinant = factor.determinant();
     Progress progress = Progress::kMoved;
@@ -156,7 +161,7 @@ class StationaryNewton {
         singular_solution_ = at_noise();
         return RateStatus::kNotIndexOne;
       }
-      step_ = -factor.solve(residual_);
+      set_step(factor);
       progress = settled() ? Progress::kSettled : advance(pursuit, factor);
     }
     const bool fallen = fell(factor, first_determinant);
@@ -165,13 +170,13 @@ class StationaryNewton {
     }
     if (progress != Progress::kSettled) {
       if (!at_noise()) return RateStatus::kNoSolution;
-      step_.setConstant(T(0));
+      fill(step_, T(0));
     }
     if (fallen && singular_root(factor)) {
       singular_solution_ = true;
       return RateStatus::kNotIndexOne;
     }
-    y = x_ + step_;
+    for (int i = 0; i < size(); ++i) y[i] = x_[i] + step_[i];
     return RateStatus::kOk;
   }
 
@@ -181,11 +186,19 @@ class StationaryNewton {
  private:
   enum class Progress { kMoved, kSettled, kStalled };
 
+  [[nodiscard]] int size() const { return static_cast<int>(step_.size()); }
+  static void fill(Unknowns& x, const T& value) { std::fill_n(x.data(), x.size(), value); }
+  // Where the equations are linear it ends at the solution.
+  void set_step(const Factor& factor) {
+    step_ = factor.solve(residual_);
+    for (int i = 0; i < size(); ++i) step_[i] = -step_[i];
+  }
+
   // True when residual_ and step_ at x_ are round-off: the step may be added, but no more is known.
   [[nodiscard]] bool settled() const {
     using std::abs;
     const T few = T(8) * epsilon<T>();
-    if (step_.cwiseAbs().maxCoeff() <= few * x_.cwiseAbs().maxCoeff()) return true;
+    if (largest_entry(step_) <= few * largest_entry(x_)) return true;
     for (int i = 0; i < residual_.size(); ++i) {
       T size(0);
       for (int j = 0; j < residual_.size(); ++j) size += abs(hessian_(i, j) * x_[j]);
@@ -206,17 +219,18 @@ class StationaryNewton {
     const bool nearby = pursuit == Pursuit::kAnyNearby;
     const T shortest = T(1) / T(std::int64_t{1} << (nearby ? kFewHalvings : kMaxHalvings));
     for (T a = last_length_ < T(0.5) ? T(2) * last_length_ : T(1); a >= shortest; a *= T(0.5)) {
-      x_ = start + a * step;
+      for (int i = 0; i < size(); ++i) x_[i] = start[i] + a * step[i];
       residual_ = equations_.residual(x_);
-      step_ = -factor.solve(residual_);
-      const Unknowns expected = (T(1) - a) * step;
-      const T deviation = (step_ - expected).norm();
+      set_step(factor);
+      Unknowns away = step_;
+      for (int i = 0; i < size(); ++i) away[i] -= (T(1) - a) * step[i];
+      const T deviation = away.norm();
       if (!(deviation <= T(0.5) * a * length)) continue;  // also where it is not a number
       if (settled()) return Progress::kSettled;
       equations_.linearize(x_, residual_, hessian_);
       const Factor next(hessian_);
       const T ratio = next.determinant() / factor.determinant();
-      if (hessian_.allFinite() &&
+      if (all_finite(hessian_) &&
           (pursuit != Pursuit::kBranch || (ratio > T(0.25) && ratio < T(4)))) {
         factor = next;
         last_length_ = a;
@@ -232,11 +246,14 @@ class StationaryNewton {
 
   // Where no step helps, or none ends: x_ may still be as good as the rounding of H_y allows.
   [[nodiscard]] bool at_noise() const {
-    using std::cbrt;
+    using std::abs, std::cbrt;
     const T third = cbrt(epsilon<T>());
-    if (step_.cwiseAbs().maxCoeff() <= third * third * x_.cwiseAbs().maxCoeff()) return true;
+    if (largest_entry(step_) <= third * third * largest_entry(x_)) return true;
     const Unknowns noise = equations_.noise(x_);
-    return (residual_.cwiseAbs().array() <= noise.array()).all();
+    for (int i = 0; i < size(); ++i) {
+      if (!(abs(residual_[i]) <= noise[i])) return false;
+    }
+    return true;
   }
 
   // The iterates ran into a point where det H_yy is small against where they began.
@@ -251,7 +268,9 @@ class StationaryNewton {
     Unknowns residual(radius.size());
     Square hessian(radius.size(), radius.size());
     for (const int sign : {-1, 1}) {
-      equations_.linearize(x_ + T(sign) * radius, residual, hessian);
+      Unknowns beside = x_;
+      for (int i = 0; i < size(); ++i) beside[i] += T(sign) * radius[i];
+      equations_.linearize(beside, residual, hessian);
       const T ratio = Factor(hessian).determinant() / factor.determinant();
       if (!(ratio > T(0.5) && ratio < T(2))) return true;
     }
@@ -293,21 +312,30 @@ template <class Equations>
   if constexpr (HasFirstGuess<Equations>) {
     if (settled(equations.cold_start())) return result;
   }
-  const Unknowns zero = Unknowns::Constant(m, T(0));
+  Unknowns zero(m);
+  std::fill_n(zero.data(), m, T(0));
   if (settled(zero)) return result;
 
   // Where H_yy is singular at 0, its least squares step: (A A + d I) x = -A r, d small.
   Unknowns residual(m);
   Square a(m, m);
   equations.linearize(zero, residual, a);
-  const T size = a.cwiseAbs().maxCoeff();
-  if (!residual.allFinite() || !a.allFinite() || !(size > T(0))) return result;
-  Square normal = a.lazyProduct(a);
-  for (int i = 0; i < m; ++i) normal(i, i) += std::numeric_limits<float>::epsilon() * size * size;
-  const Unknowns right = a.lazyProduct(residual);
-  const Unknowns start = -typename Equations::Factor(normal).solve(right);
-  const T radius = start.cwiseAbs().maxCoeff();
-  if (!start.allFinite() || !(radius > T(0))) return result;
+  const T size = largest_entry(a);
+  if (!all_finite(residual) || !all_finite(a) || !(size > T(0))) return result;
+  Square normal(m, m);
+  Unknowns right(m);
+  for (int i = 0; i < m; ++i) {
+    right[i] = T(0);
+    for (int k = 0; k < m; ++k) right[i] += a(i, k) * residual[k];
+    for (int j = 0; j < m; ++j) {
+      normal(i, j) = T(i == j ? std::numeric_limits<float>::epsilon() : 0) * size * size;
+      for (int k = 0; k < m; ++k) normal(i, j) += a(i, k) * a(k, j);
+    }
+  }
+  Unknowns start = typename Equations::Factor(normal).solve(right);
+  for (int i = 0; i < m; ++i) start[i] = -start[i];
+  const T radius = largest_entry(start);
+  if (!all_finite(start) || !(radius > T(0))) return result;
   if (settled(start)) return result;
 
   constexpr int kMore = 8;
@@ -338,7 +366,7 @@ template <class System, class T>
                                           const Vector<T, System::kDof>& p,
                                           Vector<T, System::kAlgebraic>& y) {
   const StationaryEquations<System, T> equations{system, t, q, p};
-  if ((y.array() == T(0)).all()) return stationary_cold_start(equations, y);
+  if (largest_entry(y) == T(0)) return stationary_cold_start(equations, y);
   return StationaryNewton(equations).solve(Pursuit::kBranch, y);
 }
 

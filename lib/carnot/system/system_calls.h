@@ -50,15 +50,15 @@ template <class System>
 RateStatus rate(const void* opaque, double t, const double* z, double* y, double* z_dot) {
   constexpr int n = System::kDof;
   constexpr int m = System::kAlgebraic;
-  const Vector<double, n> q = view<n>(z);
-  const Vector<double, n> p = view<n>(z + n);
-  Vector<double, m> algebraic = view<m>(y);
+  const Vector<double, n> q = vector_at<n>(z);
+  const Vector<double, n> p = vector_at<n>(z + n);
+  Vector<double, m> algebraic = vector_at<m>(y);
   Rate<double, n> out;
   const RateStatus status = system_of<System>(opaque).rate(t, q, p, algebraic, out);
   if (status != RateStatus::kOk) return status;
-  view<m>(y) = algebraic;
-  view<n>(z_dot) = out.q_dot;
-  view<n>(z_dot + n) = out.p_dot;
+  store(algebraic, y);
+  store(out.q_dot, z_dot);
+  store(out.p_dot, z_dot + n);
   return status;
 }
 
@@ -75,10 +75,10 @@ RateStatus jacobian(const void* opaque, double t, const double* z, const double*
     constexpr int kSize = 2 * System::kDof;
     constexpr int m = System::kAlgebraic;
     Matrix<double, kSize, kSize> a;
-    const Vector<double, kSize> at = view<kSize>(z);
-    const Vector<double, m> algebraic = view<m>(y);
+    const Vector<double, kSize> at = vector_at<kSize>(z);
+    const Vector<double, m> algebraic = vector_at<m>(y);
     const RateStatus status = phase_jacobian(system_of<System>(opaque), t, at, algebraic, a);
-    if (status == RateStatus::kOk) view<kSize * kSize>(out) = view<kSize * kSize>(a.data());
+    if (status == RateStatus::kOk) store(a, out);
     return status;
   }
 }
@@ -139,10 +139,8 @@ double hamiltonian(
     const void* opaque, double t, const double* q, const double* p, const double* y) {
   constexpr int n = System::kDof;
   constexpr int m = System::kAlgebraic;
-  return system_of<System>(opaque).hamiltonian(t,
-                                               Vector<double, n>(view<n>(q)),
-                                               Vector<double, n>(view<n>(p)),
-                                               Vector<double, m>(view<m>(y)));
+  return system_of<System>(opaque).hamiltonian(
+      t, vector_at<n>(q), vector_at<n>(p), vector_at<m>(y));
 }
 
 template <class System>
@@ -152,12 +150,9 @@ RateStatus find_multipliers(
   constexpr int m = System::kAlgebraic;
   constexpr int k = System::kMultipliers;
   Vector<double, k> lambda = Vector<double, k>::Zero();
-  const RateStatus status = system_of<System>(opaque).multipliers(t,
-                                                                  Vector<double, n>(view<n>(q)),
-                                                                  Vector<double, n>(view<n>(p)),
-                                                                  Vector<double, m>(view<m>(y)),
-                                                                  lambda);
-  view<k>(out) = lambda;
+  const RateStatus status = system_of<System>(opaque).multipliers(
+      t, vector_at<n>(q), vector_at<n>(p), vector_at<m>(y), lambda);
+  store(lambda, out);
   return status;
 }
 
@@ -177,16 +172,16 @@ template <class System>
 NodeMeasures measure_node(const void* opaque, double t, const double* z, double* y) {
   constexpr int n = System::kDof;
   constexpr int m = System::kAlgebraic;
-  Vector<double, m> algebraic = view<m>(y);
+  Vector<double, m> algebraic = vector_at<m>(y);
   const NodeMeasures out = carnot::measure_node<System>(
-      system_of<System>(opaque), t, view<n>(z), view<n>(z + n), algebraic);
-  view<m>(y) = algebraic;
+      system_of<System>(opaque), t, vector_at<n>(z), vector_at<n>(z + n), algebraic);
+  store(algebraic, y);
   return out;
 }
 
 template <class System>
 void branch(const void* opaque, double* y) {
-  view<System::kAlgebraic>(y) = SystemOnBranch<System>::from(opaque).branch;
+  store(SystemOnBranch<System>::from(opaque).branch, y);
 }
 
 }  // namespace system_calls

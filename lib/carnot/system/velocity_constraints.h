@@ -119,14 +119,17 @@ class VelocityConstraints {
                                                    const Matrix<T, kMultipliers, kDof>& g) const {
     Matrix<T, kDof, kDof> a = scene_.mass(q);
     if constexpr (kMultipliers > 0) {
-      const Matrix<T, kDof, kDof> square = product(g.transpose(), g);
+      const Matrix<T, kDof, kDof> square = transposed_times(g, g);
       T mass_trace = a(0, 0);
       T square_trace = square(0, 0);
       for (int i = 1; i < kDof; ++i) {
         mass_trace += a(i, i);
         square_trace += square(i, i);
       }
-      a += (mass_trace / square_trace) * square;
+      const T gamma = mass_trace / square_trace;
+      for (int i = 0; i < kDof; ++i) {
+        for (int j = 0; j < kDof; ++j) a(i, j) += gamma * square(i, j);
+      }
     }
     return a;
   }
@@ -139,10 +142,11 @@ class VelocityConstraints {
                                        const Vector<T, kDof>& v,
                                        Vector<T, kMultipliers>& lambda) const {
     if constexpr (kMultipliers > 0) {
-      const Vector<T, kDof> excess = product(scene_.mass(q), v) - p;
+      Vector<T, kDof> excess = product(scene_.mass(q), v);
+      subtract_from(excess, p);
       const Matrix<T, kMultipliers, kDof> g = scene_.constraints(q);
       const Matrix<T, kMultipliers, kDof> weighted = weighed(counted_masses(q), g);
-      const Matrix<T, kMultipliers, kMultipliers> gram = product(weighted, g.transpose());
+      const Matrix<T, kMultipliers, kMultipliers> gram = times_transposed(weighted, g);
       const Cholesky<T, kMultipliers> factor(gram);
       if (!factor.positive()) return constraint_failure(gram);
       const Vector<T, kMultipliers> rhs = product(weighted, excess);
@@ -161,7 +165,7 @@ class VelocityConstraints {
     if constexpr (HasFrame<Scene>) {
       return multipliers(q, p, Vector<T, kDof>(product(scene_.frame(q), y)), lambda);
     } else {
-      lambda = y.template tail<kMultipliers>();
+      lambda = part<kDof, kMultipliers>(y);
       return RateStatus::kOk;
     }
   }
@@ -172,7 +176,10 @@ class VelocityConstraints {
                                          const Vector<T, kDof>& v,
                                          const Vector<T, kMultipliers>& lambda) const {
     Vector<T, kDof> p = product(scene_.mass(q), v);
-    if constexpr (kMultipliers > 0) p -= product(scene_.constraints(q).transpose(), lambda);
+    if constexpr (kMultipliers > 0) {
+      const Vector<T, kDof> force = transposed_times(scene_.constraints(q), lambda);
+      subtract_from(p, force);
+    }
     return p;
   }
 
@@ -182,12 +189,13 @@ class VelocityConstraints {
     if constexpr (kMultipliers > 0) {
       const Matrix<T, kMultipliers, kDof> g = scene_.constraints(q);
       const Matrix<T, kMultipliers, kDof> weighted = weighed(counted_masses(q), g);
-      const Matrix<T, kMultipliers, kMultipliers> gram = product(weighted, g.transpose());
+      const Matrix<T, kMultipliers, kMultipliers> gram = times_transposed(weighted, g);
       const Cholesky<T, kMultipliers> factor(gram);
       if (!factor.positive()) return constraint_failure(gram);
       const Vector<T, kMultipliers> violated = product(g, v);
-      const Vector<T, kMultipliers> part = factor.solve(violated);
-      v -= product(weighted.transpose(), part);
+      const Vector<T, kMultipliers> weights = factor.solve(violated);
+      const Vector<T, kDof> move = transposed_times(weighted, weights);
+      subtract_from(v, move);
     }
     return RateStatus::kOk;
   }
@@ -200,7 +208,7 @@ class VelocityConstraints {
                                       const Vector<T, kMultipliers>& lambda,
                                       Vector<T, kDof>& p) const {
     const Vector<T, kDof> given = v;
-    if (project(q, v) != RateStatus::kOk) v.setConstant(std::numeric_limits<T>::quiet_NaN());
+    if (project(q, v) != RateStatus::kOk) v = filled<kDof>(std::numeric_limits<T>::quiet_NaN());
     p = momentum(q, v, lambda);
     return relative_move(counted_masses(q), given, v);
   }
@@ -228,7 +236,7 @@ class VelocityConstraints {
       return scene_.frame_mass(q);
     } else {
       const Matrix<T, kDof, kFrame> mb = product(scene_.mass(q), b);
-      return product(b.transpose(), mb);
+      return transposed_times(b, mb);
     }
   }
 
@@ -244,7 +252,7 @@ class VelocityConstraints {
   [[nodiscard]] T multiplier_hamiltonian(const Vector<T, kDof>& q,
                                          const Vector<T, kDof>& p,
                                          const Vector<T, kDof + kMultipliers>& y) const {
-    const Vector<T, kDof> v = y.template head<kDof>();
+    const Vector<T, kDof> v = part<0, kDof>(y);
     const Vector<T, kMultipliers> gv = constraint(q, v);
     T h = dot(p, v) - kinetic(q, v) + potential(q);
     for (int i = 0; i < kMultipliers; ++i) h += y[kDof + i] * gv[i];
@@ -257,7 +265,7 @@ class VelocityConstraints {
                                       Vector<T, kFrame>& u,
                                       Rate<T, kDof>& out) const {
     const Matrix<T, kDof, kFrame> b = scene_.frame(q);
-    u = product(b.transpose(), p);
+    u = transposed_times(b, p);
     if constexpr (HasOrthogonalFrame<Scene>) {
       const Vector<T, kFrame> masses = scene_.frame_masses(q);
       using Number = std::decay_t<decltype(value_of(masses[0]))>;
@@ -275,7 +283,8 @@ class VelocityConstraints {
     }
     out.q_dot = product(b, u);
     if constexpr (HasFrameGradient<Scene>) {
-      out.p_dot = -scene_.frame_gradient(q, p, u);
+      const Vector<T, kDof> slope = scene_.frame_gradient(q, p, u);
+      for (int i = 0; i < kDof; ++i) out.p_dot[i] = -slope[i];
     } else {
       Vector<T, kDof> excess = product(scene_.mass(q), out.q_dot);
       for (int i = 0; i < kDof; ++i) excess[i] = p[i] - excess[i];
@@ -300,23 +309,27 @@ class VelocityConstraints {
     if constexpr (kMultipliers > 0) {
       Matrix<T, kDof, kMultipliers> w;  // A^-1 G'
       for (int i = 0; i < kMultipliers; ++i) {
-        const Vector<T, kDof> row = g.row(i).transpose();
-        w.col(i) = factor.solve(row);
+        Vector<T, kDof> row;
+        for (int j = 0; j < kDof; ++j) row[j] = g(i, j);
+        row = factor.solve(row);
+        for (int j = 0; j < kDof; ++j) w(j, i) = row[j];
       }
       const Matrix<T, kMultipliers, kMultipliers> schur = product(g, w);
       const Cholesky<T, kMultipliers> schur_factor(schur);
       if (!schur_factor.positive()) return constraint_failure(g);
       const Vector<T, kMultipliers> rhs = product(g, v);
-      const Vector<T, kMultipliers> lambda = -schur_factor.solve(rhs);
-      v += product(w, lambda);
-      y.template tail<kMultipliers>() = lambda;
+      Vector<T, kMultipliers> lambda = schur_factor.solve(rhs);
+      for (int i = 0; i < kMultipliers; ++i) lambda[i] = -lambda[i];
+      const Vector<T, kDof> move = product(w, lambda);
+      add_to(v, move);
+      for (int i = 0; i < kMultipliers; ++i) y[kDof + i] = lambda[i];
     }
-    y.template head<kDof>() = v;
+    for (int i = 0; i < kDof; ++i) y[i] = v[i];
     out.q_dot = v;
     const auto at = seeded(q);
     Vector<T, kDof> slope = kinetic_slope(at, v);
     if constexpr (kMultipliers > 0) {
-      const Vector<T, kMultipliers> lambda = y.template tail<kMultipliers>();
+      const Vector<T, kMultipliers> lambda = part<kDof, kMultipliers>(y);
       add_slope(scene_.constraints(at), lambda, v, slope);
     }
     for (int i = 0; i < kDof; ++i) out.p_dot[i] = -slope[i];
@@ -341,7 +354,7 @@ class VelocityConstraints {
   template <class T>
   [[nodiscard]] Vector<T, kDof> kinetic_slope(const Vector<Jet<T, kDof>, kDof>& q,
                                               const Vector<T, kDof>& v) const {
-    Vector<T, kDof> slope = Vector<T, kDof>::Constant(constant<T>(0));
+    Vector<T, kDof> slope = filled<kDof>(constant<T>(0));
     if constexpr (HasPotential<Scene>) slope = scene_.potential(q).v;
     const Matrix<Jet<T, kDof>, kDof, kDof> mass = scene_.mass(q);
     for (int i = 0; i < kDof; ++i) {
@@ -366,7 +379,7 @@ class VelocityConstraints {
   static RateStatus diagnose(const Matrix<T, kMultipliers, kDof>& g,
                              const Matrix<T, kDof, kDof>& a) {
     if constexpr (kMultipliers > 0) {
-      const Matrix<T, kMultipliers, kMultipliers> gram = product(g, g.transpose());
+      const Matrix<T, kMultipliers, kMultipliers> gram = times_transposed(g, g);
       if (!Cholesky<T, kMultipliers>(gram).positive()) return constraint_failure(g);
     }
     return mass_failure(a);

@@ -65,7 +65,8 @@ void set_legendre(Tableau<T>& tableau) {
   for (int i = 0; i < s; ++i) {
     const LegendreValues<T> beyond = legendre(s, T(T(2) * tableau.c[i] + T(1)));
     for (int k = 0; k < std::min(kKept, s); ++k) {
-      tableau.cautious.row(i) += tableau.omega[i] * beyond[k] * tableau.legendre.row(k);
+      const T weight = tableau.omega[i] * beyond[k];
+      for (int j = 0; j < s; ++j) tableau.cautious(i, j) += weight * tableau.legendre(k, j);
     }
   }
 }

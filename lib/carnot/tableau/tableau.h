@@ -84,7 +84,8 @@ bool is_symplectic(const Tableau<T, s>& tableau) {
 template <class T, int s>
 void set_weights(Tableau<T, s>& tableau) {
   tableau.omega = tableau.b;
-  tableau.update = StageVector<T, s>::Ones(tableau.b.size());
+  tableau.update = tableau.b;
+  for (int i = 0; i < tableau.b.size(); ++i) tableau.update[i] = T(1);
   for (int i = 0; i < tableau.stages(); ++i) {
     if (tableau.b[i] != T(0)) continue;
     tableau.omega[i] = T(1);
@@ -122,13 +123,16 @@ template <int s, class T>
 Tableau<T, s> fixed_stages(const Tableau<T, kAnyStages>& of) {
   assert(of.coupling == Coupling::kFull && of.stages() <= s);
   const auto vector = [](const StageVector<T, kAnyStages>& some) {
-    StageVector<T, s> all = StageVector<T, s>::Zero();
-    all.head(some.size()) = some;
+    StageVector<T, s> all;
+    for (int i = 0; i < s; ++i) all[i] = i < some.size() ? some[i] : T(0);
     return all;
   };
   const auto matrix = [](const StageMatrix<T, kAnyStages>& some) {
-    StageMatrix<T, s> all = StageMatrix<T, s>::Zero();
-    all.topLeftCorner(some.rows(), some.cols()) = some;
+    StageMatrix<T, s> all;
+    for (int i = 0; i < s; ++i) {
+      for (int j = 0; j < s; ++j)
+        all(i, j) = i < some.rows() && j < some.cols() ? some(i, j) : T(0);
+    }
     return all;
   };
   Tableau<T, s> tableau;

@@ -40,17 +40,20 @@ struct AdmissibleVelocities {
     const Matrix<T, kControls, kDof> w = controls(frame(q));
     if constexpr (HasControlWeight<Scene>) {
       const Matrix<T, kControls, kDof> rw = product(scene.control_weight(q), w);
-      return product(w.transpose(), rw);
+      return transposed_times(w, rw);
     } else {
-      return product(w.transpose(), w);
+      return transposed_times(w, w);
     }
   }
 
   // C.
   template <class T>
   [[nodiscard]] Matrix<T, kDof, kDof> constraints(const Vector<T, kDof>& q) const {
-    Matrix<T, kDof, kDof> c = -gauge(q);
-    for (int i = 0; i < kDof; ++i) c(i, i) += constant<T>(1);
+    Matrix<T, kDof, kDof> c = gauge(q);
+    for (int i = 0; i < kDof; ++i) {
+      for (int j = 0; j < kDof; ++j) c(i, j) = -c(i, j);
+      c(i, i) += constant<T>(1);
+    }
     return c;
   }
 
@@ -99,22 +102,11 @@ struct AdmissibleVelocities {
     return f;
   }
 
-  // F'x.
-  template <class T>
-  static Vector<T, kControls> transposed_times(const Matrix<T, kDof, kControls>& f,
-                                               const Vector<T, kDof>& x) {
-    Vector<T, kControls> sum = Vector<T, kControls>::Constant(constant<T>(0));
-    for (int i = 0; i < kDof; ++i) {
-      for (int j = 0; j < kControls; ++j) sum[j] += f(i, j) * x[i];
-    }
-    return sum;
-  }
-
   // F'F, made regular.
   template <class T>
   static Matrix<T, kControls, kControls> regular_square(const Matrix<T, kDof, kControls>& f) {
     constexpr double kRegular = 1e-14;
-    Matrix<T, kControls, kControls> square = product(f.transpose(), f);
+    Matrix<T, kControls, kControls> square = transposed_times(f, f);
     T trace = square(0, 0);
     for (int i = 1; i < kControls; ++i) trace += square(i, i);
     for (int i = 0; i < kControls; ++i) square(i, i) += constant<T>(kRegular) * trace;
@@ -127,8 +119,10 @@ struct AdmissibleVelocities {
     const Cholesky<T, kControls> factor(regular_square(f));
     Matrix<T, kControls, kDof> w;
     for (int j = 0; j < kDof; ++j) {
-      const Vector<T, kControls> row = f.row(j).transpose();
-      w.col(j) = factor.solve(row);
+      Vector<T, kControls> row;
+      for (int i = 0; i < kControls; ++i) row[i] = f(j, i);
+      row = factor.solve(row);
+      for (int i = 0; i < kControls; ++i) w(i, j) = row[i];
     }
     return w;
   }

@@ -98,7 +98,7 @@ void write_entries(const VelocityConstraints<Scene>& system,
 template <class B>
 void transcription_entries(
     const void* opaque, const double* q, const GaugeUnits& units, bool slopes, double* out) {
-  const Vector<double, B::n> at = view<B::n>(q);
+  const Vector<double, B::n> at = vector_at<B::n>(q);
   with_units(B::from(opaque).system, units, [&](const auto& system) {
     if (slopes) {
       write_entries(system, seeded(at), out);
