@@ -55,7 +55,7 @@ struct StageWorkspace {
     std::fill_n(stages.data(), stages.size(), T(0));
     std::fill_n(increments.data(), increments.size(), T(0));
     all_algebraic.resize(System::kAlgebraic, tableau.c.size());
-    start_on(Algebraic::Zero());
+    start_on(filled<System::kAlgebraic>(T(0)));
   }
 
   // The branch of H_y = 0 to begin with.

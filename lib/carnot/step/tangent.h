@@ -227,12 +227,10 @@ class Tangent {
         add(T(1), m.value, argument);
         multiply(jacobian_[i], argument, increment_[i]);
         for (int c = 0; c < kSize; ++c) {
-          T away(0);
           for (int r = 0; r < kSize; ++r) {
-            away = std::max(away, abs(increment_[i](r, c) - last_[i](r, c)));
+            const T moved = weights_[c] * abs(increment_[i](r, c) - last_[i](r, c));
+            if (moved > change || moved != moved) change = moved;  // a NaN stays
           }
-          const T moved = weights_[c] * away;
-          if (!(moved <= change)) change = moved;  // NaN, too
         }
       }
       return change;
