@@ -1,20 +1,11 @@
-// The `carnot` program.
-#include <algorithm>
+// The `carnot` program: what a geodesic needs. It becomes another one for all else
+// (run/deferred.h).
 #include <array>
 
 #include "program.h"
-#include "run/laboratory.h"
-#include "text/interrupt.h"
 
 int main(int argc, char** argv) {
   using namespace carnot::apps;
-  const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
-  if (!arguments.empty() && is_laboratory_command(arguments.front())) {
-    return become_laboratory(arguments);
-  }
-  guard_streams();
-  watch_for_interrupts();
-  constexpr std::array<AddSubcommand, 6> kSubcommands = {
-      add_geodesic, add_atlas, add_continue, add_front, add_flow, add_scenes};
-  return run_program(arguments, kSubcommands);
+  constexpr std::array<AddSubcommand, 3> kSubcommands = {add_geodesic, add_flow, add_scenes};
+  return run_main(argc, argv, Program::kCarnot, kSubcommands);
 }

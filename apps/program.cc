@@ -9,8 +9,8 @@
 
 #include "carnot/language/nearest.h"
 #include "carnot/language/text_error.h"
+#include "run/deferred.h"
 #include "run/delivery.h"
-#include "run/laboratory.h"
 #include "run/subcommands.h"
 #include "text/arguments.h"
 #include "text/interrupt.h"
@@ -98,9 +98,9 @@ void build(CLI::App& app, Invocation& invocation, std::span<const AddSubcommand>
   for (const AddSubcommand add : subcommands) add(app, invocation);
   // For --help; what they do is in another program.
   const std::vector<std::string> names = subcommand_names(app);
-  for (const LaboratoryCommand& command : kLaboratory) {
+  for (const DeferredCommand& command : kDeferred) {
     if (std::find(names.begin(), names.end(), command.name) != names.end()) continue;
-    add_laboratory_command(app, command.name);
+    add_deferred_command(app, command.name);
   }
   app.require_subcommand(0, 1);
 }
@@ -150,6 +150,17 @@ int run_program(const std::vector<std::string>& arguments,
   if (!interrupted() || status == kSuccess) return status;
   if (speaks_for_all()) complain("interrupted");
   return kInterrupted;
+}
+
+int run_main(int argc, char** argv, Program self, std::span<const AddSubcommand> subcommands) {
+  const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
+  if (!arguments.empty()) {
+    const Program home = program_of(arguments.front());
+    if (home > self) return become(home, arguments);
+  }
+  guard_streams();
+  watch_for_interrupts();
+  return run_program(arguments, subcommands);
 }
 
 }  // namespace carnot::apps

@@ -8,6 +8,7 @@ install_packages "$root/scripts/packages.txt"
 is_configured CARNOT_BUILD_APPS=ON || configure CARNOT_BUILD_APPS=ON CARNOT_BUILD_TESTS=OFF
 targets=(carnot)
 case ${1-} in
+  atlas | continue | front) targets+=(carnot_families) ;;
   methods | verify | paper | benchmark | stress) targets+=(carnot_laboratory) ;;
 esac
 build_targets "${targets[@]}"

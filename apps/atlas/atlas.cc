@@ -23,6 +23,7 @@
 #include "carnot/shooting/distance_field.h"
 #include "carnot/shooting/solve_many.h"
 #include "catalogue/scene_choice.h"
+#include "run/deferred.h"
 #include "run/delivery.h"
 #include "run/search_options.h"
 #include "run/subcommands.h"
@@ -378,7 +379,7 @@ class Atlas {
 void add_atlas(CLI::App& app, Invocation& invocation) {
   auto call = std::make_shared<AtlasCall>();
   call->run.searches = true;
-  CLI::App& atlas = *app.add_subcommand("atlas", "Find the geodesics of many problems.");
+  CLI::App& atlas = add_deferred_command(app, "atlas");
   add_model_options(atlas, call->run);
   const auto add = [&](const char* name, std::string& value, const char* type, const char* help) {
     atlas.add_option(name, value, help)->type_name(type);

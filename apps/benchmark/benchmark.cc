@@ -21,7 +21,7 @@
 #include "carnot/language/nearest.h"
 #include "carnot/plots/plot_file.h"
 #include "run/delivery.h"
-#include "run/laboratory.h"
+#include "run/deferred.h"
 #include "run/subcommands.h"
 #include "text/numbers.h"
 #include "text/output_file.h"
@@ -374,7 +374,7 @@ int run_benchmark(const Options& options, const std::vector<std::string>& argume
 
 void add_benchmark(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<Options>();
-  CLI::App& benchmark = add_laboratory_command(app, "benchmark");
+  CLI::App& benchmark = add_deferred_command(app, "benchmark");
   benchmark
       .add_option("SCENE", options->scenes, "vehicle-cosine, vehicle, heisenberg (all of them)")
       ->type_name("");

@@ -16,7 +16,7 @@
 #include "catalogue/text_entry.h"
 #include "run/delivery.h"
 #include "run/geodesic_text.h"
-#include "run/laboratory.h"
+#include "run/deferred.h"
 #include "run/random_target.h"
 #include "run/search_options.h"
 #include "run/subcommands.h"
@@ -259,7 +259,7 @@ int run_stress(const StressOptions& options, const std::vector<std::string>& arg
 
 void add_stress(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<StressOptions>();
-  CLI::App& stress = add_laboratory_command(app, "stress");
+  CLI::App& stress = add_deferred_command(app, "stress");
   stress.add_option("SCENE", options->scene, "a name from `carnot scenes`")->type_name("");
   stress.add_flag("--suite", options->suite, "hard cases and their laws, without a scene");
   stress.add_flag("--short", options->brief, "of the suite what takes seconds");

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "continue/continue_result.h"
+#include "run/deferred.h"
 #include "run/search_options.h"
 #include "run/subcommands.h"
 #include "text/progress_bar.h"
@@ -65,8 +66,7 @@ void add_continue_options(CLI::App& app, ContinueCall& options) {
 
 void add_continue(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<ContinueCall>();
-  CLI::App& subcommand = *app.add_subcommand(
-      "continue", "Follow a geodesic while an end, the time or a parameter changes.");
+  CLI::App& subcommand = add_deferred_command(app, "continue");
   add_continue_options(subcommand, *options);
   add_model_options(subcommand, options->run);
   add_effort_options(subcommand, options->run);

@@ -6,6 +6,7 @@
 #include "carnot/shooting/wavefront.h"
 #include "front/front_request.h"
 #include "front/front_result.h"
+#include "run/deferred.h"
 #include "run/subcommands.h"
 #include "text/interrupt.h"
 
@@ -127,8 +128,7 @@ void add_front_options(CLI::App& app, FrontCall& options) {
 void add_front(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<FrontCall>();
   options->run.searches = true;
-  CLI::App& front =
-      *app.add_subcommand("front", "Fronts, spheres, caustics and cut loci of a point.");
+  CLI::App& front = add_deferred_command(app, "front");
   add_front_options(front, *options);
   add_model_options(front, options->run);
   add_effort_options(front, options->run);

@@ -13,7 +13,7 @@
 #include "carnot/plots/interrupts_blocked.h"
 #include "paper/paper_parts.h"
 #include "run/delivery.h"
-#include "run/laboratory.h"
+#include "run/deferred.h"
 #include "run/subcommands.h"
 #include "text/interrupt.h"
 #include "text/numbers.h"
@@ -203,7 +203,7 @@ int run_paper(const PaperOptions& options, const std::vector<std::string>& argum
 
 void add_paper(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<PaperOptions>();
-  CLI::App& paper = add_laboratory_command(app, "paper");
+  CLI::App& paper = add_deferred_command(app, "paper");
   paper.add_option("--output", options->output, "write figures and paper.json to a directory")
       ->type_name("DIR");
   paper.add_flag("--json", options->destination.json, "print one JSON object");

@@ -3,7 +3,7 @@
 
 #include "catalogue/scene_choice.h"
 #include "run/delivery.h"
-#include "run/laboratory.h"
+#include "run/deferred.h"
 #include "run/subcommands.h"
 #include "text/text_table.h"
 #include "verify/audit_text.h"
@@ -80,7 +80,7 @@ std::string methods_text(const std::vector<MethodAudit>& rows) {
 
 void add_methods(CLI::App& app, Invocation& invocation) {
   auto destination = std::make_shared<Destination>();
-  CLI::App& methods = add_laboratory_command(app, "methods");
+  CLI::App& methods = add_deferred_command(app, "methods");
   add_table_options(methods, *destination);
   methods.footer(kMethodsFooter);
   methods.callback([destination, &invocation] {

@@ -12,7 +12,7 @@
 #include "catalogue/method_table.h"
 #include "catalogue/scene_choice.h"
 #include "run/delivery.h"
-#include "run/laboratory.h"
+#include "run/deferred.h"
 #include "run/subcommands.h"
 #include "text/numbers.h"
 #include "text/progress_bar.h"
@@ -219,7 +219,7 @@ int run_verify(const VerifyCall& options, const std::vector<std::string>& argume
 
 void add_verify(CLI::App& app, Invocation& invocation) {
   auto options = std::make_shared<VerifyCall>();
-  CLI::App& verify = add_laboratory_command(app, "verify");
+  CLI::App& verify = add_deferred_command(app, "verify");
   verify.add_option("SCENE", options->scenes, "names from `carnot scenes` (one of each kind)")
       ->type_name("");
   verify.add_option("--method", options->methods, "names from `carnot methods`, with commas (all)")

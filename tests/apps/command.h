@@ -67,9 +67,10 @@ class Sandbox {
 
   // `prefix` goes before the program, e.g. `timeout`.
   [[nodiscard]] Outcome run(const std::vector<std::string>& arguments,
-                            const std::string& prefix = "") const {
-    std::string command = "cd " + shell_quoted(directory().string()) + " && " + prefix + " " +
-                          shell_quoted(CARNOT_PROGRAM);
+                            const std::string& prefix = "",
+                            const std::string& program = CARNOT_PROGRAM) const {
+    std::string command =
+        "cd " + shell_quoted(directory().string()) + " && " + prefix + " " + shell_quoted(program);
     for (const std::string& argument : arguments) command += " " + shell_quoted(argument);
     command += " > ../out 2> ../err < /dev/null";
     const int status = std::system(command.c_str());

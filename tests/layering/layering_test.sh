@@ -20,7 +20,7 @@ lib_rooms='make_limit make_inlined_dynamics make_rattle_dynamics make_dynamics l
 shooting_rooms='ompl_state_space distance_field wavefront front solve_many solve_field field continuation warm_start steering_function cut_time rays steer continue
   find_geodesics search extremal shoot path problem geodesic_options boundary_value_problem geodesic
   reason linear'
-apps_rooms='ompl main laboratory program benchmark paper verify tables flow front atlas geodesic continue run catalogue text'
+apps_rooms='ompl main families laboratory program benchmark paper verify front atlas continue tables flow geodesic run catalogue text'
 
 # climbing FOLDER PREFIX ROOMS: prints each include that goes to a floor above its own. FOLDER holds
 # the rooms, and PREFIX is how their headers are included.
