@@ -1,6 +1,7 @@
 // carnot atlas: many problems, on all cores, resumable.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <filesystem>

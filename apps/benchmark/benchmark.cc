@@ -4,6 +4,7 @@
 // runs.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <memory>
@@ -20,8 +21,8 @@
 #include "benchmark/benchmark_rows.h"
 #include "carnot/language/nearest.h"
 #include "carnot/plots/plot_file.h"
-#include "run/delivery.h"
 #include "run/deferred.h"
+#include "run/delivery.h"
 #include "run/subcommands.h"
 #include "text/numbers.h"
 #include "text/output_file.h"

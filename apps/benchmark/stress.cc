@@ -1,6 +1,7 @@
 // carnot stress: default searches for the geodesics to many random targets; or the hard cases.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <limits>
@@ -14,9 +15,9 @@
 #include "catalogue/method_table.h"
 #include "catalogue/scene_choice.h"
 #include "catalogue/text_entry.h"
+#include "run/deferred.h"
 #include "run/delivery.h"
 #include "run/geodesic_text.h"
-#include "run/deferred.h"
 #include "run/random_target.h"
 #include "run/search_options.h"
 #include "run/subcommands.h"

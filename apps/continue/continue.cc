@@ -1,4 +1,5 @@
 // carnot continue: a geodesic followed while an end, the time or a parameter changes.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "continue/continue_result.h"

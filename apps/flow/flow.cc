@@ -1,4 +1,5 @@
 // carnot flow: an initial value problem, advanced and measured.
+#include <CLI/CLI.hpp>
 #include <memory>
 #include <optional>
 

@@ -1,4 +1,5 @@
 // carnot front: surfaces that extremals from a point make, and how long one is a shortest path.
+#include <CLI/CLI.hpp>
 #include <chrono>
 #include <memory>
 

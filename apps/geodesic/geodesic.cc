@@ -1,4 +1,5 @@
 // carnot geodesic: extremals that join two configurations, without a guess.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "geodesic/geodesic_result.h"

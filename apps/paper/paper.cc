@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -12,8 +13,8 @@
 
 #include "carnot/plots/interrupts_blocked.h"
 #include "paper/paper_parts.h"
-#include "run/delivery.h"
 #include "run/deferred.h"
+#include "run/delivery.h"
 #include "run/subcommands.h"
 #include "text/interrupt.h"
 #include "text/numbers.h"

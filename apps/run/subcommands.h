@@ -1,9 +1,12 @@
 // The subcommands. Each is one source file that adds its options and what to do with them.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
+
+namespace CLI {
+class App;
+}
 
 namespace carnot::apps {
 

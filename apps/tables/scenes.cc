@@ -1,6 +1,7 @@
 // carnot scenes: what can be computed, and with which parameters.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <filesystem>

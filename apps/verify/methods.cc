@@ -1,9 +1,10 @@
 // carnot methods: the integrators that --method names, declared and measured.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "catalogue/scene_choice.h"
-#include "run/delivery.h"
 #include "run/deferred.h"
+#include "run/delivery.h"
 #include "run/subcommands.h"
 #include "text/text_table.h"
 #include "verify/audit_text.h"

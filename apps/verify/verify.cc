@@ -1,6 +1,7 @@
 // carnot verify: every method on a scene of every kind, held against the laws it declares.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <memory>
@@ -11,8 +12,8 @@
 #include "carnot/numerics/parallel.h"
 #include "catalogue/method_table.h"
 #include "catalogue/scene_choice.h"
-#include "run/delivery.h"
 #include "run/deferred.h"
+#include "run/delivery.h"
 #include "run/subcommands.h"
 #include "text/numbers.h"
 #include "text/progress_bar.h"
