@@ -60,7 +60,11 @@ SceneInfo describe_scene(const Scene& scene) {
   info.kind = kind_of<Scene>();
   if (info.configuration.empty()) {
     for (int i = 0; i < Scene::kDof; ++i) {
-      info.configuration.push_back({"q" + std::to_string(i + 1), "", 0});
+      // In one expression GCC 12 warns of a copy without end, where much is inlined (its bug
+      // 105651).
+      std::string name = "q";
+      name += std::to_string(i + 1);
+      info.configuration.push_back({name, "", 0});
     }
   }
   return info;
