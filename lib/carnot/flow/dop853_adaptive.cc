@@ -13,13 +13,12 @@ namespace {
 
 using namespace dop853;
 
-constexpr int kLanes = kErasedLanes;
-using P = Pack<kLanes>;
+using P = Pack<kErasedLanes>;
 
 // Row k of sum_j w_j f_j; each f_j has `size` rows.
 template <const Weights& w>
 [[gnu::always_inline]] inline P weighted_row(const double* f, int size, int k) {
-  return weighted<w>(P(0), [&](int j) { return P::load(f + (j * size + k) * kLanes); });
+  return weighted<w>(P(0), [&](int j) { return P::load(f + (j * size + k) * kErasedLanes); });
 }
 
 // Row k of `to` <- row k of z + h sum_j a_ij f_j. The weights are known to the compiler: where they
@@ -29,7 +28,7 @@ template <int i>
     const double* z, double h, const double* f, int size, double* to) {
   for (int k = 0; k < size; ++k) {
     const P sum = weighted_row<kRow<i>>(f, size, k);
-    (P::load(z + k * kLanes) + P(h) * sum).store(to + k * kLanes);
+    (P::load(z + k * kErasedLanes) + P(h) * sum).store(to + k * kErasedLanes);
   }
 }
 constexpr auto kCombine = []<int... i>(std::integer_sequence<int, i...> /*stages*/) {
@@ -37,7 +36,7 @@ constexpr auto kCombine = []<int... i>(std::integer_sequence<int, i...> /*stages
 }
 (std::make_integer_sequence<int, kStages + 1>{});
 
-using Lanes = std::array<double, kLanes>;
+using Lanes = std::array<double, kErasedLanes>;
 
 // The error of the step over the tolerance, largest of all components: with e5, e3 the differences
 // to the embedded results, h e5^2 / sqrt(e5^2 + e3^2 / 100).
@@ -46,8 +45,8 @@ using Lanes = std::array<double, kLanes>;
   P fifth_square(0);
   P third_square(0);
   for (int i = 0; i < size; ++i) {
-    const P scale =
-        P(tolerance) * (P(1) + max(abs(P::load(z + i * kLanes)), abs(P::load(end + i * kLanes))));
+    const P scale = P(tolerance) * (P(1) + max(abs(P::load(z + i * kErasedLanes)),
+                                               abs(P::load(end + i * kErasedLanes))));
     const P fifth_ratio = weighted_row<kError5>(f, size, i) / scale;
     const P third_ratio = weighted_row<kError3>(f, size, i) / scale;
     fifth_square += fifth_ratio * fifth_ratio;
@@ -73,21 +72,21 @@ AdaptiveReport dop853_adaptive(const AdaptiveFlow& flow, double* z, double* memo
   static const Tableau<double> kTableau = dop853_tableau<double>();
   const int size = 2 * functions.dof;
   double* const f = memory;
-  double* const stage = f + kStages * size * kLanes;
-  double* const y = stage + size * kLanes;
-  double* const time = y + functions.algebraic * kLanes;
+  double* const stage = f + kStages * size * kErasedLanes;
+  double* const y = stage + size * kErasedLanes;
+  double* const time = y + functions.algebraic * kErasedLanes;
   AdaptiveReport report;
   const auto rate = [&](double t, const double* at, int i) {
-    std::fill_n(time, kLanes, t);
+    std::fill_n(time, kErasedLanes, t);
     ++report.evaluations;
-    return flow.functions.rates(flow.system, time, at, y, f + i * size * kLanes);
+    return flow.functions.rates(flow.system, time, at, y, f + i * size * kErasedLanes);
   };
   if (!rate(start, z, 0)) return report;
 
   // A first step that moves by a hundredth of the size of z, as far as the tolerance allows.
   double speed = 0;
   double extent = 0;
-  for (int i = 0; i < size * kLanes; ++i) {
+  for (int i = 0; i < size * kErasedLanes; ++i) {
     speed = std::max(speed, std::abs(f[i]));
     extent = std::max(extent, std::abs(z[i]));
   }
@@ -120,7 +119,7 @@ AdaptiveReport dop853_adaptive(const AdaptiveFlow& flow, double* z, double* memo
         std::isfinite(ratio) ? kSafety / std::pow(std::max(ratio, 1e-10), 0.125) : kMostShrink;
     if (ratio <= 1) {
       ++report.steps;
-      std::copy_n(stage, size * kLanes, z);
+      std::copy_n(stage, size * kErasedLanes, z);
       left = last ? 0 : left - std::abs(step);
       h = std::abs(step) * std::clamp(growth, kMostShrink, after_rejection ? 1.0 : kMostGrowth);
       after_rejection = false;

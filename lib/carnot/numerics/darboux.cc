@@ -16,7 +16,7 @@
 namespace carnot {
 namespace {
 
-using Square = Eigen::MatrixXd;
+using SquareMatrix = Eigen::MatrixXd;
 
 // Orthonormal columns with q'J p = -sigma < 0.
 struct Pair {
@@ -25,14 +25,14 @@ struct Pair {
   double sigma = 0;
 };
 
-Square square(std::span<const double> numbers, int size) {
+SquareMatrix square(std::span<const double> numbers, int size) {
   assert(static_cast<int>(numbers.size()) == size * size);
-  return Eigen::Map<const Square>(numbers.data(), size, size);
+  return Eigen::Map<const SquareMatrix>(numbers.data(), size, size);
 }
 
-std::vector<double> numbers(const Square& a) { return {a.data(), a.data() + a.size()}; }
+std::vector<double> numbers(const SquareMatrix& a) { return {a.data(), a.data() + a.size()}; }
 
-double round_off(const Square& a) {
+double round_off(const SquareMatrix& a) {
   return kRankTolerance * static_cast<double>(a.rows()) * std::numeric_limits<double>::epsilon();
 }
 
@@ -43,7 +43,7 @@ std::string text(double x) {
 }
 
 // (J - J')/2. Throws unless J is finite, antisymmetric to round-off, and not zero.
-Square checked(const Square& j) {
+SquareMatrix checked(const SquareMatrix& j) {
   if (!j.allFinite()) {
     throw std::invalid_argument("the structure matrix J has entries that are not finite");
   }
@@ -53,7 +53,7 @@ Square checked(const Square& j) {
     throw std::invalid_argument("the structure matrix J is not antisymmetric: |J + J'| = " +
                                 text(defect));
   }
-  Square antisymmetric = 0.5 * (j - j.transpose());
+  SquareMatrix antisymmetric = 0.5 * (j - j.transpose());
   if (antisymmetric.cwiseAbs().maxCoeff() == 0) {
     throw std::invalid_argument("the structure matrix J is zero: purely algebraic, nothing moves");
   }
@@ -61,15 +61,15 @@ Square checked(const Square& j) {
 }
 
 // True where no row of J has two entries.
-bool pairs_the_coordinates(const Square& j) {
+bool pairs_the_coordinates(const SquareMatrix& j) {
   for (int r = 0; r < j.rows(); ++r) {
     if ((j.row(r).array() != 0).count() > 1) return false;
   }
   return true;
 }
 
-std::vector<Pair> own_pairs(const Square& j) {
-  const Square unit = Square::Identity(j.rows(), j.cols());
+std::vector<Pair> own_pairs(const SquareMatrix& j) {
+  const SquareMatrix unit = SquareMatrix::Identity(j.rows(), j.cols());
   std::vector<Pair> pairs;
   for (int q = 0; q < j.rows(); ++q) {
     for (int p = 0; p < j.cols(); ++p) {
@@ -80,9 +80,9 @@ std::vector<Pair> own_pairs(const Square& j) {
 }
 
 // J <- Q'J Q, tridiagonal; returns Q. With H = I - 2 v v' and w = J v, HJH = J + 2 (v w' - w v').
-Square tridiagonalise(Square& j) {
+SquareMatrix tridiagonalise(SquareMatrix& j) {
   const auto size = static_cast<int>(j.rows());
-  Square q = Square::Identity(size, size);
+  SquareMatrix q = SquareMatrix::Identity(size, size);
   for (int k = 0; k + 2 < size; ++k) {
     Eigen::VectorXd v = Eigen::VectorXd::Zero(size);
     for (int i = k + 1; i < size; ++i) v[i] = j(i, k);
@@ -102,14 +102,14 @@ Square tridiagonalise(Square& j) {
   return q;
 }
 
-std::vector<Pair> schur_pairs(const Square& matrix) {
+std::vector<Pair> schur_pairs(const SquareMatrix& matrix) {
   const double scale = matrix.cwiseAbs().maxCoeff();
-  Square j = matrix / scale;
+  SquareMatrix j = matrix / scale;
   const auto size = static_cast<int>(j.rows());
-  const Square q = tridiagonalise(j);
+  const SquareMatrix q = tridiagonalise(j);
   const int odd = size / 2;
-  Square b = Square::Zero(size - odd, odd);  // rows: even coordinates
-  Square y = Square::Identity(odd, odd);
+  SquareMatrix b = SquareMatrix::Zero(size - odd, odd);  // rows: even coordinates
+  SquareMatrix y = SquareMatrix::Identity(odd, odd);
   for (int c = 0; c < odd; ++c) {
     for (int r = 0; r < size - odd; ++r) b(r, c) = j(2 * r, 2 * c + 1);
   }
@@ -134,7 +134,7 @@ std::vector<Pair> schur_pairs(const Square& matrix) {
 
 // Fills u from column `from` on with an orthonormal basis of the complement of those before: the
 // unit vector that the columns span least of all, orthogonalised twice.
-void complete(Square& u, int from) {
+void complete(SquareMatrix& u, int from) {
   for (int c = from; c < u.cols(); ++c) {
     const auto before = u.leftCols(c);
     int least = 0;
@@ -150,7 +150,7 @@ void complete(Square& u, int from) {
 }  // namespace
 
 DarbouxForm darboux_form(std::span<const double> structure_matrix, int size) {
-  const Square j = checked(square(structure_matrix, size));
+  const SquareMatrix j = checked(square(structure_matrix, size));
   std::vector<Pair> pairs = pairs_the_coordinates(j) ? own_pairs(j) : schur_pairs(j);
   double largest = 0;
   for (const Pair& pair : pairs) largest = std::max(largest, pair.sigma);
@@ -162,7 +162,7 @@ DarbouxForm darboux_form(std::span<const double> structure_matrix, int size) {
 
   DarbouxForm form;
   form.dof = static_cast<int>(pairs.size());
-  Square basis = Square::Zero(size, size);
+  SquareMatrix basis = SquareMatrix::Zero(size, size);
   for (int i = 0; i < form.dof; ++i) {
     const Pair& pair = pairs[static_cast<std::size_t>(i)];
     basis.col(i) = pair.q;
@@ -170,7 +170,7 @@ DarbouxForm darboux_form(std::span<const double> structure_matrix, int size) {
     form.sigma.push_back(pair.sigma);
   }
   complete(basis, 2 * form.dof);
-  Square inverse = basis.transpose();  // so far orthogonal
+  SquareMatrix inverse = basis.transpose();  // so far orthogonal
   for (int i = 0; i < 2 * form.dof; ++i) {
     const double scale = std::sqrt(form.sigma[static_cast<std::size_t>(i % form.dof)]);
     basis.col(i) /= scale;
@@ -195,11 +195,12 @@ DarbouxForm darboux_form(std::span<const double> structure_matrix,
                          int dof,
                          std::span<const double> own_basis) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const Square j = checked(square(structure_matrix, size));
-  const Square basis = square(own_basis, size);
-  const Square jt = j.lazyProduct(basis);
-  const Square moved = basis.transpose().lazyProduct(jt) - canonical_structure<Square>(size, dof);
-  const Square sizes = basis.cwiseAbs().transpose().lazyProduct(jt.cwiseAbs());
+  const SquareMatrix j = checked(square(structure_matrix, size));
+  const SquareMatrix basis = square(own_basis, size);
+  const SquareMatrix jt = j.lazyProduct(basis);
+  const SquareMatrix moved =
+      basis.transpose().lazyProduct(jt) - canonical_structure<SquareMatrix>(size, dof);
+  const SquareMatrix sizes = basis.cwiseAbs().transpose().lazyProduct(jt.cwiseAbs());
   const double defect = moved.cwiseAbs().maxCoeff();
   if (!(defect <= round_off(j) * sizes.maxCoeff())) {
     throw std::invalid_argument(
@@ -209,7 +210,7 @@ DarbouxForm darboux_form(std::span<const double> structure_matrix,
   RowMajor inverse = RowMajor::Identity(size, size);
   constexpr double kHalfTheDigits = 1e-8;
   if (!lu_solve(size, factor.data(), size, inverse.data()) ||
-      !Square(inverse.lazyProduct(basis)).isIdentity(kHalfTheDigits)) {
+      !SquareMatrix(inverse.lazyProduct(basis)).isIdentity(kHalfTheDigits)) {
     throw std::invalid_argument("the scene's own T of Darboux coordinates has no inverse");
   }
   return {dof, numbers(basis), numbers(inverse), {}};

@@ -130,14 +130,14 @@ bool arrive(const BoundaryValueProblem& problem, double tolerance, AbnormalCurve
 }
 
 // How far curves are followed, and in which steps, in natural scales.
-struct Reach {
+struct CurveLength {
   double longest;
   double step;
 };
 
 // Follows the curve until it arrives.
 std::optional<AbnormalCurve> follow(const BoundaryValueProblem& problem,
-                                    const Reach& reach,
+                                    const CurveLength& reach,
                                     double tolerance,
                                     AbnormalCurve curve) {
   constexpr double kNear = 1e-3;  // steps; a curve that misses by more does not arrive
@@ -206,7 +206,7 @@ std::optional<AbnormalCurve> abnormal_curve(const BoundaryValueProblem& problem,
   const MatrixXd covectors = combined(field.covectors(start));
   std::optional<AbnormalCurve> shortest;
   if (!(distance > 0)) return std::nullopt;
-  Reach reach{longest, std::min(std::max(kStep, kPart * distance), 0.5 * distance)};
+  CurveLength reach{longest, std::min(std::max(kStep, kPart * distance), 0.5 * distance)};
   reach.longest = std::min(longest, kMostSteps * reach.step);
   for (Eigen::Index j = 0; j < covectors.cols(); ++j) {
     for (const double sign : {1.0, -1.0}) {

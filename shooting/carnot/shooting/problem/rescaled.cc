@@ -13,8 +13,6 @@
 namespace carnot::internal {
 namespace {
 
-constexpr int kLanes = kErasedLanes;
-
 // What the calls of a rescaled scene take: the scene, and the unit of each number.
 struct Rescaled {
   Dynamics own;
@@ -38,12 +36,12 @@ struct Rescaled {
   static void unscale(const double* from, const std::vector<double>& units, int count, double* to) {
     for (int i = 0; i < count; ++i) to[i] = from[i] / units[i];
   }
-  // Rows of kLanes numbers.
+  // Rows of kErasedLanes numbers.
   void scale_rows(const double* from, int count, double* to) const {
-    for (int i = 0; i < count; ++i) scale_row(from + i * kLanes, z[i], to + i * kLanes);
+    for (int i = 0; i < count; ++i) scale_row(from + i * kErasedLanes, z[i], to + i * kErasedLanes);
   }
   static void scale_row(const double* from, double unit, double* to) {
-    (Pack<kLanes>::load(from) * Pack<kLanes>(unit)).store(to);
+    (Pack<kErasedLanes>::load(from) * Pack<kErasedLanes>(unit)).store(to);
   }
   [[nodiscard]] StepPlan in_own_time(StepPlan plan) const {
     for (double* t : {&plan.start, &plan.end, &plan.step, &plan.last}) *t *= scales.time;
@@ -85,7 +83,7 @@ RateStatus jacobian(const void* opaque, double t, const double* z, const double*
   return status;
 }
 
-// Times of kLanes points and their phase points, in units of the scene.
+// Times of kErasedLanes points and their phase points, in units of the scene.
 struct Points {
   double* t;
   double* z;
@@ -93,8 +91,8 @@ struct Points {
 };
 Points points_of(const Rescaled& r, const double* t, const double* z, int more_rows) {
   const int size = 2 * r.dof();
-  double* const memory = scratch((1 + size + more_rows) * kLanes);
-  const Points points{memory, memory + kLanes, memory + (1 + size) * kLanes};
+  double* const memory = scratch((1 + size + more_rows) * kErasedLanes);
+  const Points points{memory, memory + kErasedLanes, memory + (1 + size) * kErasedLanes};
   Rescaled::scale_row(t, r.scales.time, points.t);
   r.scale_rows(z, size, points.z);
   return points;
@@ -105,7 +103,7 @@ bool rates(const void* opaque, const double* t, const double* z, double* y, doub
   const Points at = points_of(r, t, z, 0);
   if (!r.own.functions->rates(r.system(), at.t, at.z, y, z_dot)) return false;
   for (int i = 0; i < 2 * r.dof(); ++i) {
-    double* const row = z_dot + i * kLanes;
+    double* const row = z_dot + i * kErasedLanes;
     Rescaled::scale_row(row, r.scales.time / r.z[i], row);
   }
   return true;
@@ -119,7 +117,7 @@ bool jacobians(
   if (!r.own.functions->jacobians(r.system(), at.t, at.z, weights, jacobian)) return false;
   for (int entry = 0; entry < size * size; ++entry) {
     const double unit = r.scales.time * r.z[entry % size] / r.z[entry / size];
-    double* const row = jacobian + entry * kLanes;
+    double* const row = jacobian + entry * kErasedLanes;
     Rescaled::scale_row(row, unit, row);
   }
   return true;
@@ -164,9 +162,9 @@ void measure(const void* opaque,
   const Rescaled& r = Rescaled::from(opaque);
   const int n = r.dof();
   const Points at = points_of(r, t, z, n + 1);
-  double* const steps = at.rest + n * kLanes;
+  double* const steps = at.rest + n * kErasedLanes;
   r.scale_rows(dq, n, at.rest);
-  for (int l = 0; l < kLanes; ++l) steps[l] = r.scales.time * weights[l];
+  for (int l = 0; l < kErasedLanes; ++l) steps[l] = r.scales.time * weights[l];
   r.own.functions->measure(r.system(), count, at.t, steps, at.z, at.rest, y, out);
   for (int l = 0; l < count; ++l) {
     out[l].lagrangian /= r.scales.energy();
@@ -235,10 +233,10 @@ void packed_entries(
   const Rescaled& r = Rescaled::from(opaque);
   const int n = r.dof();
   double* const at = scratch(n * kTranscriptionLanes);
-  static_assert(kLanes == kTranscriptionLanes);
+  static_assert(kErasedLanes == kTranscriptionLanes);
   r.scale_rows(q, n, at);
   r.own.transcription->packed_entries(r.system(), at, r.gauge(), slopes, out);
-  convert_entries<kLanes>(r, slopes, slopes ? 1 + n : 1, out);
+  convert_entries<kErasedLanes>(r, slopes, slopes ? 1 + n : 1, out);
 }
 
 // The arguments of a Hessian in units of the scene, of `lanes` points side by side.
@@ -297,9 +295,9 @@ void packed_hessian(const void* opaque,
                     const GaugeUnits& /*units*/,
                     double* l_qq) {
   const Rescaled& r = Rescaled::from(opaque);
-  const HessianArguments own = hessian_arguments<kLanes>(r, q, v, lambda);
+  const HessianArguments own = hessian_arguments<kErasedLanes>(r, q, v, lambda);
   r.own.transcription->packed_hessian(r.system(), own.q, own.v, own.lambda, r.gauge(), l_qq);
-  convert_hessian<kLanes>(r, l_qq);
+  convert_hessian<kErasedLanes>(r, l_qq);
 }
 
 // --- flows ---------------------------------------------------------------------------------------
