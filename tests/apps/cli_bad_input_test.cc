@@ -39,7 +39,7 @@ TEST_P(BadInputTest, IsRefusedInOneLine) {
 }
 
 const std::vector<BadInput> kProgram{
-    {"", "geodesic, atlas, continue, front, flow, scenes"},
+    {"", "geodesic, flow, scenes, atlas, continue, front"},
     {"''", "SUBCOMMAND ''"},
     {"fly", "'fly'"},
     {"flwo", "did you mean flow?"},
