@@ -36,11 +36,11 @@ constexpr auto kCombine = []<int... i>(std::integer_sequence<int, i...> /*stages
 }
 (std::make_integer_sequence<int, kStages + 1>{});
 
-using Lanes = std::array<double, kErasedLanes>;
+using LaneNumbers = std::array<double, kErasedLanes>;
 
 // The error of the step over the tolerance, largest of all components: with e5, e3 the differences
 // to the embedded results, h e5^2 / sqrt(e5^2 + e3^2 / 100).
-[[gnu::flatten, gnu::noinline]] Lanes error_ratio(
+[[gnu::flatten, gnu::noinline]] LaneNumbers error_ratio(
     const double* z, const double* end, double h, double tolerance, const double* f, int size) {
   P fifth_square(0);
   P third_square(0);
@@ -53,7 +53,7 @@ using Lanes = std::array<double, kErasedLanes>;
     third_square += third_ratio * third_ratio;
   }
   const P scale = sqrt(max(P(size) * (fifth_square + P(0.01) * third_square), P(1e-300)));
-  alignas(64) Lanes ratios;
+  alignas(64) LaneNumbers ratios;
   (P(std::abs(h)) * fifth_square / scale).store(ratios.data());
   return ratios;
 }
@@ -109,7 +109,7 @@ AdaptiveReport dop853_adaptive(const AdaptiveFlow& flow, double* z, double* memo
     double ratio = INFINITY;
     if (ok) {
       kCombine[kStages](z, step, f, size, stage);
-      const Lanes ratios = error_ratio(z, stage, step, tolerance, f, size);
+      const LaneNumbers ratios = error_ratio(z, stage, step, tolerance, f, size);
       const auto* const hardest = std::max_element(
           ratios.begin(), ratios.end(), [](double a, double b) { return a < b || std::isnan(b); });
       report.hardest = static_cast<int>(hardest - ratios.begin());

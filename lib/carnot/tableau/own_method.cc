@@ -14,7 +14,7 @@ namespace carnot {
 
 namespace {
 
-using Rows = std::vector<std::vector<double>>;
+using RowsOfNumbers = std::vector<std::vector<double>>;
 
 constexpr double kRoundOff = kOwnRoundings * std::numeric_limits<double>::epsilon();
 
@@ -22,7 +22,7 @@ void refuse_unless(bool good, const ButcherTableau& butcher, const std::string& 
   if (!good) throw std::invalid_argument("method " + butcher.name + ": " + what);
 }
 
-void check_rows(const ButcherTableau& butcher, const Rows& rows, const std::string& name) {
+void check_rows(const ButcherTableau& butcher, const RowsOfNumbers& rows, const std::string& name) {
   const std::size_t s = butcher.b.size();
   const std::string wanted =
       name + " must have " + std::to_string(s) + " rows of " + std::to_string(s);
@@ -66,7 +66,7 @@ Coupling coupling_of(const ButcherTableau& butcher) {
   return coupling;
 }
 
-StageMatrix<double, kAnyStages> mu_of(const Rows& a, const Tableau<double>& tableau) {
+StageMatrix<double, kAnyStages> mu_of(const RowsOfNumbers& a, const Tableau<double>& tableau) {
   const int s = tableau.stages();
   StageMatrix<double, kAnyStages> mu(s, s);
   for (int i = 0; i < s; ++i) {
