@@ -42,6 +42,7 @@ TEST(LinearAlgebra, EntriesAreThoseOfEigen) {
   EXPECT_EQ(largest_entry(a), a.cwiseAbs().maxCoeff());
   EXPECT_EQ(filled<3>(2.5), (Vector<double, 3>::Constant(2.5)));
   EXPECT_EQ((filled<3, 2>(2.5)), (Matrix<double, 3, 2>::Constant(2.5)));
+  EXPECT_EQ((identity<3, double>()), (Matrix<double, 3, 3>::Identity()));
   const Vector<double, 4> x(1, 2, 3, 4);
   EXPECT_EQ((part<1, 2>(x)), (Vector<double, 2>(2, 3)));
   EXPECT_EQ((part<3, 1>(x))[0], 4);

@@ -107,13 +107,7 @@ FlowReport tangent_flow(
   auto state = load<M::n>(z);
   auto winding = method.winding;
   winding.fold(state);
-  Compensated<Square> tangent;
-  for (int c = 0; c < kSize; ++c) {
-    for (int r = 0; r < kSize; ++r) {
-      tangent.value(r, c) = r == c ? 1 : 0;
-      tangent.compensation(r, c) = 0;
-    }
-  }
+  Compensated<Square> tangent{identity<kSize, double>(), filled<kSize, kSize>(0.0)};
   const FlowReport report =
       carnot::tangent_flow(stepper, plan, state, tangent, [&](long, const auto&, auto& node) {
         winding.fold(node);

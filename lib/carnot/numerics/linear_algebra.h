@@ -58,42 +58,24 @@ auto product(const A& a, const B& b) {
   return c;
 }
 
-// a' b.
+// a', as product() reads it.
+template <class A>
+struct Transposed {
+  using Scalar = typename A::Scalar;
+  static constexpr int RowsAtCompileTime = A::ColsAtCompileTime;
+  static constexpr int ColsAtCompileTime = A::RowsAtCompileTime;
+  const A& a;
+  decltype(auto) operator()(int i, int j) const { return a(j, i); }
+};
+
+// a' b, and a b'.
 template <class A, class B>
 auto transposed_times(const A& a, const B& b) {
-  using T = typename A::Scalar;
-  constexpr int kRows = A::ColsAtCompileTime;
-  constexpr int kInner = A::RowsAtCompileTime;
-  constexpr int kCols = B::ColsAtCompileTime;
-  static_assert(kInner == B::RowsAtCompileTime && kInner > 0);
-  Matrix<T, kRows, kCols> c;
-  for (int i = 0; i < kRows; ++i) {
-    for (int j = 0; j < kCols; ++j) {
-      T sum = a(0, i) * b(0, j);
-      for (int k = 1; k < kInner; ++k) sum += a(k, i) * b(k, j);
-      c(i, j) = sum;
-    }
-  }
-  return c;
+  return product(Transposed<A>{a}, b);
 }
-
-// a b'.
 template <class A, class B>
 auto times_transposed(const A& a, const B& b) {
-  using T = typename A::Scalar;
-  constexpr int kRows = A::RowsAtCompileTime;
-  constexpr int kInner = A::ColsAtCompileTime;
-  constexpr int kCols = B::RowsAtCompileTime;
-  static_assert(kInner == B::ColsAtCompileTime && kInner > 0);
-  Matrix<T, kRows, kCols> c;
-  for (int i = 0; i < kRows; ++i) {
-    for (int j = 0; j < kCols; ++j) {
-      T sum = a(i, 0) * b(j, 0);
-      for (int k = 1; k < kInner; ++k) sum += a(i, k) * b(j, k);
-      c(i, j) = sum;
-    }
-  }
-  return c;
+  return product(a, Transposed<B>{b});
 }
 
 // a += b and a -= b.
@@ -124,6 +106,15 @@ Matrix<T, rows, cols> filled(const T& entry) {
     for (int i = 0; i < rows; ++i) a(i, j) = entry;
   }
   return a;
+}
+
+template <int n, class T>
+Matrix<T, n, n> identity() {
+  Matrix<T, n, n> one;
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) one(i, j) = T(i == j ? 1 : 0);
+  }
+  return one;
 }
 
 // `count` entries of x from `first` on.

@@ -188,9 +188,7 @@ template <HolonomicSystem System, class T>
     }
   }
   Matrix<T, 2 * l, 2 * l> inverse;
-  for (int i = 0; i < 2 * n; ++i) {
-    for (int j = 0; j < 2 * n; ++j) projector(i, j) = T(i == j ? 1 : 0);
-  }
+  projector = identity<2 * n, T>();
   if (!invert_normal_mass(c, projector, inverse)) return false;
   const Matrix<T, 2 * l, 2 * n> dual = product(inverse, c);
   const Matrix<T, 2 * n, 2 * n> normal = transposed_times(c, dual);

@@ -105,9 +105,7 @@ template <class T, int l, int n>
   const Matrix<T, l, n> weighted = product(dh, h_pp);
   // Symmetric: row by row or column by column is the same.
   Matrix<T, l, l> s = times_transposed(weighted, dh);
-  for (int i = 0; i < l; ++i) {
-    for (int j = 0; j < l; ++j) inverse(i, j) = T(i == j ? 1 : 0);
-  }
+  inverse = identity<l, T>();
   if (!lu_solve(l, s.data(), l, inverse.data())) return false;
   // For a positive S, 1 / (S^-1)_ii is the part of row i that the other rows leave.
   const T least = T(64 * n) * epsilon<T>() * largest_entry(h_pp);
@@ -207,11 +205,7 @@ template <class Scene, class T>
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     const Matrix<T, l, n> dh = holonomic_jacobian(scene, x);
     Matrix<T, l, l> inverse;
-    Matrix<T, n, n> identity;
-    for (int i = 0; i < n; ++i) {
-      for (int j = 0; j < n; ++j) identity(i, j) = T(i == j ? 1 : 0);
-    }
-    if (!invert_normal_mass(dh, identity, inverse)) return false;
+    if (!invert_normal_mass(dh, identity<n, T>(), inverse)) return false;
     const Vector<T, l> h = scene.holonomic(x);
     const Vector<T, l> multipliers = product(inverse, h);
     const Vector<T, n> correction = transposed_times(dh, multipliers);
