@@ -70,6 +70,27 @@ void expect_kept(const BoundaryValueProblem& problem, const Geodesic& geodesic) 
   }
 }
 
+// A limit is broken where its expression is no number: here to the left of x = 0.95, where the
+// shortest path goes. Another end of the path has a value, which must not hide that.
+TEST(LimitedGeodesics, AreBrokenWhereTheyHaveNoValue) {
+  constexpr double kLeast = 0.95;
+  const auto problem = [](const std::string& limits) {
+    return BoundaryValueProblem{program_scene("unicycle", limits), {1, 0, 0}, {1, 0.3, 0}};
+  };
+  const auto leftmost = [](const Geodesic& geodesic) {
+    double least = 1;
+    for (const auto& q : geodesic.trajectory.q) least = std::min(least, q[0]);
+    return least;
+  };
+  EXPECT_LT(leftmost(best(problem(""))), kLeast);
+  const Geodesic geodesic = best(problem("limit -1 < sqrt(x - 0.95) < 5 \"root\"\n"));
+  EXPECT_GE(leftmost(geodesic), kLeast);
+  EXPECT_GE(geodesic.limits.at(0).lowest_slack, 1);
+  BoundaryValueProblem outside = problem("limit -1 < sqrt(x - 0.95) < 5 \"root\"\n");
+  outside.to[0] = 0.9;
+  EXPECT_THAT(solve(outside).message, HasSubstr("the limit 'root' has no value at the target"));
+}
+
 TEST(LimitedGeodesics, ParkWithAWheelThatTurnsLittle) {
   const BoundaryValueProblem problem = parking("limit -0.3 < phi - theta < 0.3 \"steering\"\n");
   const Geodesic geodesic = best(problem);

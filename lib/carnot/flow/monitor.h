@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "carnot/flow/stage_measures.h"
+#include "carnot/numerics/scalar.h"
 #include "carnot/system/measures.h"
 
 namespace carnot {
@@ -54,9 +55,7 @@ class Monitor {
   [[nodiscard]] double holonomic_error() const { return holonomic_error_; }
 
  private:
-  static void raise(double& largest, double value) {
-    if (!(value <= largest)) largest = value;  // a NaN stays
-  }
+  static void raise(double& largest, double value) { largest = maximum(largest, value); }
 
   // H at a node; its constraints are measured too.
   double node(double t, const State<double, n>& z) {

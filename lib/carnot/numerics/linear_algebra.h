@@ -152,10 +152,7 @@ auto largest_entry(const A& a) {
   using T = typename A::Scalar;
   T largest(0);
   for (int j = 0; j < a.cols(); ++j) {
-    for (int i = 0; i < a.rows(); ++i) {
-      const T size = abs(a(i, j));
-      if (size > largest || size != size) largest = size;
-    }
+    for (int i = 0; i < a.rows(); ++i) largest = maximum<T>(largest, abs(a(i, j)));
   }
   return largest;
 }

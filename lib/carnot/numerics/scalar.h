@@ -50,6 +50,17 @@ auto value_of(const T& x) {
 // A comparison that must hold; of packs (pack.h) in every lane.
 constexpr bool all(bool holds) { return holds; }
 
+// The larger and the smaller of two numbers; not a number where one of them is none, as the
+// operations of these names in IEEE 754-2019. std::max keeps the first one there.
+template <class T>
+constexpr T maximum(const T& a, const T& b) {
+  return a >= b || a != a ? a : b;
+}
+template <class T>
+constexpr T minimum(const T& a, const T& b) {
+  return a <= b || a != a ? a : b;
+}
+
 // Unit round-off distance: the gap between 1 and the next number.
 template <class T>
 constexpr Real<T> epsilon() {

@@ -20,6 +20,7 @@
 
 #include "carnot/numerics/lu.h"
 #include "carnot/numerics/round_off.h"
+#include "carnot/numerics/scalar.h"
 #include "carnot/step/step_report.h"
 #include "carnot/system/holonomic.h"
 #include "carnot/system/phase_space.h"
@@ -224,8 +225,7 @@ class RattleMidpoint {
     using std::abs;
     T size(0);
     for (int i = 0; i < kUnknowns; ++i) {
-      const T part = abs(correction_[i]) / resolution_[i];
-      if (!(part <= size)) size = part;  // a NaN stays
+      size = maximum<T>(size, abs(correction_[i]) / resolution_[i]);
     }
     return size;
   }

@@ -25,6 +25,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "carnot/numerics/scalar.h"
 #include "carnot/step/packed_stages.h"
 #include "carnot/step/stage_equations.h"
 #include "carnot/step/stage_newton.h"
@@ -184,11 +185,10 @@ class RungeKutta {
       for (int i = 0; i < kSize; ++i) {
         T moved(0);
         for (int j = block.begin(); j < block.end(); ++j) {
-          const T away = work_.abs_of(next(i, j) - work_.stages(i, j));
-          if (!(away <= moved)) moved = away;  // a NaN stays
+          moved = maximum<T>(moved, work_.abs_of(next(i, j) - work_.stages(i, j)));
         }
         if (change != nullptr) change[i] = moved;
-        if (!(moved <= most)) most = moved;
+        most = maximum(most, moved);
       }
       for (int j = block.begin(); j < block.end(); ++j) {
         for (int i = 0; i < kSize; ++i) work_.stages(i, j) = next(i, j);

@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "carnot/numerics/balance.h"
+#include "carnot/numerics/scalar.h"
 #include "carnot/step/runge_kutta.h"
 
 namespace carnot {
@@ -228,8 +229,7 @@ class Tangent {
         multiply(jacobian_[i], argument, increment_[i]);
         for (int c = 0; c < kSize; ++c) {
           for (int r = 0; r < kSize; ++r) {
-            const T moved = weights_[c] * abs(increment_[i](r, c) - last_[i](r, c));
-            if (moved > change || moved != moved) change = moved;  // a NaN stays
+            change = maximum<T>(change, weights_[c] * abs(increment_[i](r, c) - last_[i](r, c)));
           }
         }
       }

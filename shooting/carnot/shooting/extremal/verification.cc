@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "carnot/numerics/scalar.h"
 #include "carnot/shooting/linear/round_off.h"
 #include "carnot/shooting/problem/ends.h"
 #include "carnot/shooting/problem/manifold.h"
@@ -51,9 +52,9 @@ double knot_defect(const BoundaryValueProblem& problem, const Knots& knots, long
       return std::numeric_limits<double>::infinity();
     }
     const bool last = i + 1 == knots.segments;
-    defect = std::max(defect,
-                      last ? miss(problem, z.data(), unit)
-                           : largest_difference(z.data(), knots.at(i + 1), 2 * n));
+    defect = maximum(defect,
+                     last ? miss(problem, z.data(), unit)
+                          : largest_difference(z.data(), knots.at(i + 1), 2 * n));
   }
   return defect;
 }

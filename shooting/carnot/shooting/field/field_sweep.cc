@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "carnot/numerics/parallel.h"
+#include "carnot/numerics/scalar.h"
 #include "carnot/shooting/problem/ends.h"
 
 namespace carnot::internal {
@@ -294,7 +295,7 @@ double FieldSweep::error_of(FieldSlot slot,
                             const std::vector<double>& units) const {
   const std::vector<double> to = target(points_.point_of(slot), points_.windings(slot));
   double error = 0;
-  for (int j = 0; j < n_; ++j) error = std::max(error, units[j] * std::abs(end[j] - to[j]));
+  for (int j = 0; j < n_; ++j) error = maximum(error, units[j] * std::abs(end[j] - to[j]));
   return error;
 }
 

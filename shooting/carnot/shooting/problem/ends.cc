@@ -3,13 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "carnot/numerics/scalar.h"
+
 namespace carnot::internal {
-namespace {
-
-// The larger one; a NaN stays.
-double larger(double largest, double value) { return value <= largest ? largest : value; }
-
-}  // namespace
 
 std::vector<double> phase_point(const BoundaryValueProblem& problem, const std::vector<double>& x) {
   std::vector<double> z = problem.from;
@@ -42,14 +38,14 @@ double distance_between_ends(const BoundaryValueProblem& problem) {
   double largest = 0;
   for (int j = 0; j < problem.dynamics.dof; ++j) {
     if (problem.is_free_from(j) || problem.is_free_to(j)) continue;
-    largest = larger(largest, std::abs(problem.from[j] - problem.to[j]));
+    largest = maximum(largest, std::abs(problem.from[j] - problem.to[j]));
   }
   return largest;
 }
 
 double length_per_momentum(const BoundaryValueProblem& problem, const double* p) {
   double largest = 0;
-  for (int j = 0; j < problem.dynamics.dof; ++j) largest = larger(largest, std::abs(p[j]));
+  for (int j = 0; j < problem.dynamics.dof; ++j) largest = maximum(largest, std::abs(p[j]));
   const double distance = distance_between_ends(problem);
   return distance > 0 && largest > 0 ? distance / largest : 1;
 }
@@ -57,7 +53,7 @@ double length_per_momentum(const BoundaryValueProblem& problem, const double* p)
 double endpoint_error(const BoundaryValueProblem& problem, const double* z) {
   double largest = 0;
   for (int j = 0; j < problem.dynamics.dof; ++j) {
-    if (!problem.is_free_to(j)) largest = larger(largest, std::abs(z[j] - problem.to[j]));
+    if (!problem.is_free_to(j)) largest = maximum(largest, std::abs(z[j] - problem.to[j]));
   }
   return largest;
 }
@@ -65,13 +61,14 @@ double endpoint_error(const BoundaryValueProblem& problem, const double* z) {
 double transversality_error(const BoundaryValueProblem& problem, const double* z) {
   double largest = 0;
   for (int j = 0; j < problem.dynamics.dof; ++j) {
-    if (problem.is_free_to(j)) largest = larger(largest, std::abs(z[problem.dynamics.dof + j]));
+    if (problem.is_free_to(j)) largest = maximum(largest, std::abs(z[problem.dynamics.dof + j]));
   }
   return largest;
 }
 
 double miss(const BoundaryValueProblem& problem, const double* z, double length_per_momentum) {
-  return larger(endpoint_error(problem, z), length_per_momentum * transversality_error(problem, z));
+  return maximum(endpoint_error(problem, z),
+                 length_per_momentum * transversality_error(problem, z));
 }
 
 }  // namespace carnot::internal

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "carnot/numerics/scalar.h"
 #include "carnot/shooting/path/path_lagrangian.h"
 #include "carnot/shooting/problem/ends.h"
 #include "carnot/shooting/shoot/knots.h"
@@ -144,9 +145,9 @@ void LimitedProblem::report_limits(const std::vector<std::vector<double>>& q,
     report.lowest_slack = std::numeric_limits<double>::infinity() * (q.empty() ? -1 : 1);
     for (const auto& at : q) {
       const double slack = limit.slack(limit.value(at.data(), nullptr, nullptr));
-      report.lowest_slack = slack >= report.lowest_slack ? report.lowest_slack : slack;
+      report.lowest_slack = minimum(report.lowest_slack, slack);
     }
-    geodesic.limit_violation = std::max(geodesic.limit_violation, -report.lowest_slack);
+    geodesic.limit_violation = maximum(geodesic.limit_violation, -report.lowest_slack);
     geodesic.limits.push_back(std::move(report));
   }
 }

@@ -311,9 +311,14 @@ std::string beyond_limit_at_end(const BoundaryValueProblem& problem) {
         moves = moves || (free && gradient[j] != 0);
       }
       if (moves || limit.slack(value) >= 0) continue;
+      const char* const end = start ? "start" : "target";
       std::ostringstream text;
-      text << "the " << (start ? "start" : "target") << " is beyond the limit '" << limit.name
-           << "' by " << -limit.slack(value) << ": move it, or widen the limit";
+      if (std::isnan(value)) {
+        text << "the limit '" << limit.name << "' has no value at the " << end << ": move it";
+      } else {
+        text << "the " << end << " is beyond the limit '" << limit.name << "' by "
+             << -limit.slack(value) << ": move it, or widen the limit";
+      }
       return text.str();
     }
   }

@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "carnot/numerics/scalar.h"
 #include "carnot/shooting/linear/round_off.h"
 #include "carnot/shooting/problem/ends.h"
 #include "carnot/shooting/shoot/on_wall.h"
@@ -44,8 +45,8 @@ MultiplierRange multipliers(const Walls& walls,
     const double eta = eta_at(walls, terms, piece.wall, at.data(), dynamics.dof);
     if (i > 0) {
       const double nu = (eta - before) / (path.t[i] - path.t[i - 1]);
-      range.least = nu >= range.least ? range.least : nu;  // a NaN stays
-      range.largest = std::max(range.largest, nu);
+      range.least = minimum(range.least, nu);
+      range.largest = maximum(range.largest, nu);
     }
     before = eta;
   }
@@ -120,8 +121,8 @@ BoundSurvey survey_pieces(const BoundaryValueProblem& problem,
       if (piece.wall >= 0) {
         const MultiplierRange range =
             multipliers(walls, terms, dynamics, piece, StepPlan::equal(from, to - from, count), z);
-        largest = std::max(largest, range.largest);
-        least = range.least >= least ? least : range.least;
+        largest = maximum(largest, range.largest);
+        least = minimum(least, range.least);
       }
       MonitorOptions options;
       for (const double t : times) {
@@ -148,7 +149,7 @@ BoundSurvey survey_pieces(const BoundaryValueProblem& problem,
         }
         result.end = z;
         const double unit = length_per_momentum(problem, &extremal.pieces[0].z[n]);
-        result.defect = std::max(result.defect, miss(problem, z.data(), unit));
+        result.defect = maximum(result.defect, miss(problem, z.data(), unit));
         continue;
       }
       const double* next = ends ? extremal.pieces[k + 1].z.data() : &piece.z[(i + 1) * 2 * n];
@@ -157,8 +158,7 @@ BoundSurvey survey_pieces(const BoundaryValueProblem& problem,
         for (int j = 0; j < n; ++j) z[n + j] -= piece.release * wall.gradient[j];
       }
       for (int j = 0; j < 2 * n; ++j) {
-        const double gap = std::abs(z[j] - next[j]);
-        result.defect = gap <= result.defect ? result.defect : gap;
+        result.defect = maximum(result.defect, std::abs(z[j] - next[j]));
       }
     }
     result.largest_multiplier.push_back(largest);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "carnot/numerics/linear_algebra.h"
+#include "carnot/numerics/scalar.h"
 #include "carnot/shooting/linear/dense.h"
 #include "carnot/shooting/problem/ends.h"
 
@@ -13,8 +14,7 @@ namespace carnot::internal {
 double largest_difference(const double* a, const double* b, int count) {
   double largest = 0;
   for (int j = 0; j < count; ++j) {
-    const double difference = std::abs(a[j] - b[j]);
-    largest = difference <= largest ? largest : difference;  // a NaN stays
+    largest = maximum(largest, std::abs(a[j] - b[j]));
   }
   return largest;
 }
