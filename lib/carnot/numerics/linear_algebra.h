@@ -62,8 +62,10 @@ auto product(const A& a, const B& b) {
 template <class A>
 struct Transposed {
   using Scalar = typename A::Scalar;
+  // NOLINTBEGIN(readability-identifier-naming): the names are those of Eigen
   static constexpr int RowsAtCompileTime = A::ColsAtCompileTime;
   static constexpr int ColsAtCompileTime = A::RowsAtCompileTime;
+  // NOLINTEND(readability-identifier-naming)
   const A& a;
   decltype(auto) operator()(int i, int j) const { return a(j, i); }
 };
