@@ -57,9 +57,9 @@ configure() {
   fi
 }
 
-# As many jobs of the compiler as there are cores, and 2.5 GB of memory for each.
+# As many jobs of the compiler as there are cores, and 3 GB of memory for each.
 job_count() {
-  awk -v n="$(nproc)" '/^MemAvailable/ { m = int($2 / 2.5e6) }
+  awk -v n="$(nproc)" '/^MemAvailable/ { m = int($2 / 3e6) }
     END { print m < 1 ? 1 : m < n ? m : n }' /proc/meminfo
 }
 
