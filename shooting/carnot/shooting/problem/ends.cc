@@ -1,6 +1,5 @@
 #include "carnot/shooting/problem/ends.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "carnot/numerics/scalar.h"
