@@ -293,7 +293,7 @@ void check_signs(const Dynamics& dynamics,
   const double speed = speed_of(dynamics, from, p);
   for (double& x : p) x /= speed;
   const Ray ray(dynamics, from, p);
-  for (const std::vector<double>& z : {ray.start(), ray.at(1, ray.enough_steps(1))}) {
+  for (const std::vector<double>& z : {ray.start(), ray.follow(1).z}) {
     if (z.empty() || moves_alike(dynamics, z, signs)) continue;
     throw std::invalid_argument("the scene is another one where the signs are changed");
   }

@@ -41,10 +41,12 @@ double EndSection::excess(const double* q) const {
   return excess;
 }
 
-double EndSection::excess_at(const UnitMomentum& place) const {
+double EndSection::excess_at(const UnitMomentum& place, long& steps) const {
   const Ray ray(dynamics_, from_, momenta_.momentum(place));
-  const std::vector<double> z = ray.at(t_, ray.enough_steps(t_));
-  return z.empty() ? std::numeric_limits<double>::quiet_NaN() : excess(z.data());
+  const Followed end = ray.follow(t_, steps);
+  if (end.z.empty()) return std::numeric_limits<double>::quiet_NaN();
+  steps = end.steps;
+  return excess(end.z.data());
 }
 
 bool EndSection::settle(UnitMomentum& place) const {

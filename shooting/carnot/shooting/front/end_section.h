@@ -30,8 +30,9 @@ class EndSection {
 
   // By how much q(t) misses the condition. Of angles within half a turn, and not continuous there.
   [[nodiscard]] double excess(const double* q) const;
-  // The same of an extremal; NaN where its flow fails.
-  [[nodiscard]] double excess_at(const UnitMomentum& place) const;
+  // The same of an extremal, followed in `steps` or more: in as many as are enough, which they are
+  // for the next one nearby. NaN where the flow fails.
+  double excess_at(const UnitMomentum& place, long& steps) const;
   // Half a turn, where excess() jumps; infinite where it does not.
   [[nodiscard]] double farthest() const { return 0.5 * period_; }
 

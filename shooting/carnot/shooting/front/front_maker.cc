@@ -197,7 +197,7 @@ class FrontMaker {
         }
         times_[i] = point.t;
         if (!(point.t <= kFarthest * options_.length)) return;
-        if (point.q.empty()) point.q = ray.at(point.t, ray.enough_steps(point.t));
+        if (point.q.empty()) point.q = ray.follow(point.t).z;
         if (point.q.empty()) return;
         std::copy_n(point.q.begin(), n_, ends_.begin() + static_cast<long>(i) * n_);
       });
@@ -426,7 +426,7 @@ class FrontMaker {
     vertex.conjugate_time = t;
     vertex.label = label;
     const Ray ray(dynamics_, from_, vertex.p0);
-    vertex.q = ray.at(t, ray.enough_steps(t));
+    vertex.q = ray.follow(t).z;
     vertex.q.resize(n_, kUnknown);
     return vertex;
   }

@@ -59,7 +59,8 @@ class SectionSphereMaker {
     Face face;
     int first = 0;  // vertices on the sides from the lone place to the second and the third one
     int second = 0;
-    int seam = -1;  // the vertex between them
+    bool joined = false;  // the extremal of the first leads to that of the second
+    int seam = -1;        // the vertex between them
   };
 
   bool go_on() {
@@ -252,15 +253,23 @@ class SectionSphereMaker {
     }
   }
 
-  // Leads each vertex to those beside it. Whether any became better.
+  // Leads each vertex to those beside it, and not back where it leads to the extremal that is there.
+  // Whether any became better.
   bool improve() {
     std::vector<std::array<std::optional<LevelPoint>, 2>> found(faces_.size());
+    const auto is_news = [&](int v) { return round_ == 0 || news_.contains(v); };
     for_all(faces_.size(), [&](int k) {
-      const OnSide& a = vertices_[faces_[k].first];
-      const OnSide& b = vertices_[faces_[k].second];
-      const auto is_news = [&](int v) { return round_ == 0 || news_.contains(v); };
-      if (a.known && is_news(faces_[k].first)) found[k][1] = led(b.side, b.part, a.extremal);
-      if (b.known && is_news(faces_[k].second)) found[k][0] = led(a.side, a.part, b.extremal);
+      OnFace& face = faces_[k];
+      const OnSide& a = vertices_[face.first];
+      const OnSide& b = vertices_[face.second];
+      if (is_news(face.first) || is_news(face.second)) face.joined = false;
+      if (a.known && is_news(face.first)) {
+        found[k][1] = led(b.side, b.part, a.extremal);
+        face.joined = is_at(found[k][1], b);
+      }
+      if (b.known && is_news(face.second) && !face.joined) {
+        found[k][0] = led(a.side, a.part, b.extremal);
+      }
     });
     std::set<int> better;
     for (std::size_t k = 0; k < faces_.size(); ++k) {
@@ -268,6 +277,9 @@ class SectionSphereMaker {
         const int vertex = side == 0 ? faces_[k].first : faces_[k].second;
         if (keep(found[k][side], vertices_[vertex])) better.insert(vertex);
       }
+    }
+    for (OnFace& face : faces_) {
+      if (better.contains(face.first) || better.contains(face.second)) face.joined = false;
     }
     const std::vector<int> changed(better.begin(), better.end());
     for_all(changed.size(), [&](int k) { finish(vertices_[changed[k]]); });
@@ -280,6 +292,9 @@ class SectionSphereMaker {
     constexpr double kSame = 1e-6;
     return (a - b).cwiseAbs().maxCoeff() <= kSame * std::max(a.cwiseAbs().maxCoeff(), 1e-300);
   }
+  [[nodiscard]] bool is_at(const std::optional<LevelPoint>& found, const OnSide& vertex) const {
+    return found && vertex.known && same_extremal(found->p[0], vertex.extremal.p);
+  }
 
   void make_seam() {
     std::vector<std::optional<SphereVertex>> seam(faces_.size());
@@ -287,9 +302,8 @@ class SectionSphereMaker {
       const OnFace& one = faces_[k];
       const OnSide& a = vertices_[one.first];
       const OnSide& b = vertices_[one.second];
-      if (!a.known || !b.known) return;
-      const auto there = led(b.side, b.part, a.extremal);
-      if (there && same_extremal(there->p[0], b.extremal.p)) return;
+      if (!a.known || !b.known || one.joined) return;
+      if (is_at(led(b.side, b.part, a.extremal), b)) return;
       seam[k] = between(one, a, b);
     });
     for (std::size_t k = 0; k < faces_.size(); ++k) {

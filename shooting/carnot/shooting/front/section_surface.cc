@@ -13,6 +13,7 @@
 #include "carnot/shooting/front/columns.h"
 #include "carnot/shooting/front/ray_ends.h"
 #include "carnot/shooting/linear/illinois.h"
+#include "carnot/shooting/rays/ray.h"
 
 namespace carnot::internal {
 namespace {
@@ -259,8 +260,9 @@ class LatticeCutter {
       const int a = edges_[k].first;
       const int b = edges_[k].second;
       const auto place = [&](double part) { return between(places_[a], places_[b], part); };
+      long steps = kFewestSteps;
       const auto value = [&](double part) {
-        const double excess = section_.excess_at(place(part));
+        const double excess = section_.excess_at(place(part), steps);
         return std::isfinite(excess) ? std::optional(excess) : std::nullopt;
       };
       vertices[k].place = place(illinois(0, values_[a], 1, values_[b], kEnough, value));

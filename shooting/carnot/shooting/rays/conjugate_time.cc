@@ -300,7 +300,7 @@ ConjugatePoint conjugate_point(const Ray& ray, double horizon, int order) {
   if (!(least < kMostSteps)) return unknown();
   const long fewest = std::max(1L, static_cast<long>(std::ceil(least)));
   // A flow alone tells how many are enough at first. Later on that is known but for surprises.
-  long steps = enough_steps(dynamics, count.end().z, first, fewest);
+  long steps = follow(dynamics, count.end().z, first, fewest).steps;
   double begin = 0;
   double h = first / static_cast<double>(steps);
   for (double end = first; end <= horizon; end *= 2) {

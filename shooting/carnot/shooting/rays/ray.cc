@@ -40,6 +40,35 @@ double difference_of(const std::vector<double>& a, const std::vector<double>& b,
   return std::max(relative_difference(a.data(), b.data(), n), relative_difference(&a[n], &b[n], n));
 }
 
+// Where the flow leads in these steps; empty where it fails.
+std::vector<double> led(const Dynamics& dynamics, std::vector<double> z, double t, long steps) {
+  if (!dynamics.flow(StepPlan::equal(0, t, steps), z).completed()) z.clear();
+  return z;
+}
+
+// Of the flow that tells whether so many steps are enough.
+long fewer_steps(long steps) { return steps == 1 ? 2 : steps / 2; }
+
+// How many steps are wanted after two flows, of which `end` is that of `steps`.
+long told_steps(const Dynamics& dynamics,
+                const std::vector<double>& other,
+                long others,
+                const std::vector<double>& end,
+                long steps) {
+  // What is left is so little of kFlowRoundOff, 1e-16. Beside an abnormal extremal it grows on: on
+  // the flat Martinet problem by 1e12 until extremals are conjugate, and their times are good to
+  // 1e-9 with this share, to 1.5e-8 with four times as much, and to 2e-7 with 64 times.
+  constexpr int kShare = 10;  // a power of two
+  if (other.empty()) return 2 * steps;
+  const int order = dynamics.order;
+  const double ratio = static_cast<double>(steps) / static_cast<double>(others);
+  const double allowed = kFlowRoundOff * std::max(1.0, std::ldexp(std::pow(ratio, order), -kShare));
+  const double by = difference_of(other, end, dynamics.dof) / allowed;
+  if (by <= 1) return steps;
+  const double more = std::ceil(static_cast<double>(steps) * std::pow(by, 1.0 / order));
+  return more < 2 * static_cast<double>(steps) ? static_cast<long>(more) : 2 * steps;
+}
+
 void check(bool ok, const char* what) {
   if (!ok) throw std::invalid_argument(what);
 }
@@ -90,33 +119,29 @@ long wanted_steps(const Dynamics& dynamics,
                   double t,
                   long steps,
                   const std::vector<double>& end) {
-  // What is left is so little of kFlowRoundOff, 1e-16. Beside an abnormal extremal it grows on: on
-  // the flat Martinet problem by 1e12 until extremals are conjugate, and their times are good to
-  // 1e-9 with this share, to 1.5e-8 with four times as much, and to 2e-7 with 64 times.
-  constexpr int kShare = 10;  // a power of two
-  const int order = dynamics.order;
-  const long others = steps == 1 ? 2 : steps / 2;
-  const double ratio = static_cast<double>(steps) / static_cast<double>(others);
-  const double allowed = kFlowRoundOff * std::max(1.0, std::ldexp(std::pow(ratio, order), -kShare));
-  std::vector<double> other = z;
-  if (end.empty() || !dynamics.flow(StepPlan::equal(0, t, others), other).completed()) {
-    return 2 * steps;
-  }
-  const double by = difference_of(other, end, dynamics.dof) / allowed;
-  if (by <= 1) return steps;
-  const double more = std::ceil(static_cast<double>(steps) * std::pow(by, 1.0 / order));
-  return more < 2 * static_cast<double>(steps) ? static_cast<long>(more) : 2 * steps;
+  if (end.empty()) return 2 * steps;
+  const long others = fewer_steps(steps);
+  return told_steps(dynamics, led(dynamics, z, t, others), others, end, steps);
 }
 
-long enough_steps(const Dynamics& dynamics, const std::vector<double>& z, double t, long fewest) {
-  for (long steps = fewest; steps < kMostSteps;) {
-    std::vector<double> end = z;
-    if (!dynamics.flow(StepPlan::equal(0, t, steps), end).completed()) end.clear();
-    const long wanted = wanted_steps(dynamics, z, t, steps, end);
-    if (wanted == steps) return steps;
-    steps = wanted;
+Followed follow(const Dynamics& dynamics, const std::vector<double>& z, double t, long fewest) {
+  std::vector<double> other;  // of the steps before
+  long others = 0;
+  for (long steps = std::min(fewest, kMostSteps);; steps = std::min(steps, kMostSteps)) {
+    std::vector<double> end = led(dynamics, z, t, steps);
+    if (steps == kMostSteps) return {steps, std::move(end)};
+    long wanted = 2 * steps;
+    if (!end.empty()) {
+      if (others != fewer_steps(steps)) {
+        others = fewer_steps(steps);
+        other = led(dynamics, z, t, others);
+      }
+      wanted = told_steps(dynamics, other, others, end, steps);
+    }
+    if (wanted == steps) return {steps, std::move(end)};
+    other = std::move(end);
+    others = std::exchange(steps, wanted);
   }
-  return kMostSteps;
 }
 
 std::vector<double> Ray::start() const {
@@ -126,9 +151,7 @@ std::vector<double> Ray::start() const {
 }
 
 std::vector<double> Ray::at(double t, long steps) const {
-  std::vector<double> z = start();
-  if (!dynamics_->flow(StepPlan::equal(0, t, steps), z).completed()) return {};
-  return z;
+  return led(*dynamics_, start(), t, steps);
 }
 
 std::optional<RayEnd> Ray::end(double t, long steps) const {
@@ -140,9 +163,8 @@ std::optional<RayEnd> Ray::end(double t, long steps) const {
   return end;
 }
 
-long Ray::enough_steps(double t) const {
-  constexpr long kFewest = 8;
-  return internal::enough_steps(*dynamics_, start(), t, kFewest);
+Followed Ray::follow(double t, long fewest) const {
+  return internal::follow(*dynamics_, start(), t, fewest);
 }
 
 BoundaryValueProblem Ray::problem(double t, long steps) const {
