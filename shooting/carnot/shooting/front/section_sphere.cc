@@ -253,8 +253,8 @@ class SectionSphereMaker {
     }
   }
 
-  // Leads each vertex to those beside it, and not back where it leads to the extremal that is there.
-  // Whether any became better.
+  // Leads each vertex to those beside it, and not back where it leads to the extremal that is
+  // there. Whether any became better.
   bool improve() {
     std::vector<std::array<std::optional<LevelPoint>, 2>> found(faces_.size());
     const auto is_news = [&](int v) { return round_ == 0 || news_.contains(v); };
