@@ -37,7 +37,7 @@ struct RayEnd {
   Eigen::MatrixXd tangent;  // 2n x n, d(q, p)/dp(0)
 };
 
-// More steps than this no ray is followed with, and fewer than this are not tried.
+// No ray is followed with more steps than this, and none from its start with fewer than that.
 inline constexpr long kMostSteps = 1L << 14;
 inline constexpr long kFewestSteps = 8;
 
@@ -56,8 +56,7 @@ struct Followed {
   long steps = 0;
   std::vector<double> z;  // empty where the flow fails
 };
-// Cost: flows of 3/2 of the steps where `fewest` are enough, and of some four times the steps from
-// few on.
+// Cost: flows of 3/2 of the steps where `fewest` are enough, and of up to 7/2 of them otherwise.
 Followed follow(const Dynamics& dynamics, const std::vector<double>& z, double t, long fewest);
 
 class Ray {
