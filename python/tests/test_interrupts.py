@@ -12,8 +12,9 @@ import pytest
 
 import carnot
 
+SANITIZED = "CARNOT_SANITIZED" in os.environ
 # Seconds for what ends within a few. Sanitizers make a search twenty times as long.
-PATIENCE = 1200 if "CARNOT_SANITIZED" in os.environ else 60
+PATIENCE = 1200 if SANITIZED else 60
 # Searches for minutes, if it is let.
 LONG = "carnot.scene('trailer3').geodesics([0]*6, [5, 9, 1, 1, 1, 1], all=True, starts=100000)"
 ENDLESS = """
@@ -130,7 +131,18 @@ print("begun", flush=True)
 """
 
 
-@pytest.mark.parametrize("script", [DROPPED, DAEMONS, FORKED], ids=["dropped", "daemons", "forked"])
+# The allocator of GCC 12's address sanitizer does not let go of its locks at a fork: where another
+# thread allocates at that moment, the child waits for ever.
+forked = pytest.param(
+    FORKED,
+    id="forked",
+    marks=pytest.mark.skipif(SANITIZED, reason="a fork may leave the sanitizer's allocator locked"),
+)
+
+
+@pytest.mark.parametrize(
+    "script", [pytest.param(DROPPED, id="dropped"), pytest.param(DAEMONS, id="daemons"), forked]
+)
 def test_ends_well(script):
     for _ in range(3):
         assert begun(script).wait(timeout=PATIENCE) == 0
