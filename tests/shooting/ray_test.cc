@@ -3,11 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <vector>
 
+#include "carnot/shooting/shoot/end_point.h"
 #include "shooting/problems.h"
 
 namespace carnot::internal::ray_test {
@@ -20,10 +19,8 @@ constexpr double kTime = 8;
 // At unit speed no coordinate is larger than the time, and kFlowRoundOff of that is round-off.
 constexpr double kRoundOff = 1e-13 * kTime;
 
-double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
-  double largest = 0;
-  for (std::size_t j = 0; j < a.size(); ++j) largest = std::max(largest, std::abs(a[j] - b[j]));
-  return largest;
+double apart(const std::vector<double>& a, const std::vector<double>& b) {
+  return largest_difference(a.data(), b.data(), static_cast<int>(a.size()));
 }
 
 TEST(Ray, IsFollowedInAsManyStepsAsRoundOffNeeds) {
@@ -33,9 +30,9 @@ TEST(Ray, IsFollowedInAsManyStepsAsRoundOffNeeds) {
   ASSERT_GT(followed.steps, kFewestSteps);
   EXPECT_EQ(followed.z, ray.at(kTime, followed.steps));
   EXPECT_EQ(ray.enough_steps(kTime), followed.steps);
-  EXPECT_LT(largest_difference(followed.z, ray.at(kTime, 2 * followed.steps)), kRoundOff);
+  EXPECT_LT(apart(followed.z, ray.at(kTime, 2 * followed.steps)), kRoundOff);
   // Far fewer are not enough.
-  EXPECT_GT(largest_difference(followed.z, ray.at(kTime, followed.steps / 4)), kRoundOff);
+  EXPECT_GT(apart(followed.z, ray.at(kTime, followed.steps / 4)), kRoundOff);
 }
 
 TEST(Ray, IsFollowedInNoFewerStepsThanAskedFor) {
@@ -46,7 +43,7 @@ TEST(Ray, IsFollowedInNoFewerStepsThanAskedFor) {
   EXPECT_EQ(ray.follow(kTime, first.steps).z, first.z);
   const Followed more = ray.follow(kTime, 3 * first.steps);
   EXPECT_EQ(more.steps, 3 * first.steps);
-  EXPECT_LT(largest_difference(more.z, first.z), kRoundOff);
+  EXPECT_LT(apart(more.z, first.z), kRoundOff);
 }
 
 TEST(Ray, HasNoEndWhereItsFlowFails) {
