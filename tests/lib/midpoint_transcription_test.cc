@@ -4,13 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <limits>
+#include <random>
 #include <vector>
 
 #include "carnot/step/gauss.h"
 #include "carnot/system/system_of.h"
 #include "carnot/transcription/transcription_calls.h"
 #include "testing/control_scene_list.h"
+#include "testing/largest_change.h"
 #include "testing/runs.h"
 
 namespace carnot::midpoint_transcription_test {
@@ -52,17 +56,97 @@ struct Calls {
   static constexpr int n = Scene::kDof;
   System system = make_system(test::uneven<Scene>());
   static const Calls& from(const void* opaque) { return *static_cast<const Calls*>(opaque); }
+};
 
-  bool midpoint(const double* qm, const double* v, double* terms, double* jacobian) const {
-    return midpoint_terms(functions(), this, qm, v, terms, jacobian);
+// The transcription of one interval, for vectors of any length.
+using Numbers = std::vector<double>;
+struct Transcription {
+  const TranscriptionFunctions& functions;
+  const void* system = nullptr;
+
+  [[nodiscard]] int dof() const { return functions.dof; }
+  [[nodiscard]] int term_count() const { return dof() + functions.constraints + 1; }
+  [[nodiscard]] int unknowns() const { return 2 * dof() + functions.constraints; }
+
+  // At x = (qm, v); with the Jacobian where one is given, row by row.
+  Numbers terms(const Numbers& x, Numbers* jacobian = nullptr) const {
+    Numbers out(term_count());
+    if (jacobian) jacobian->resize(out.size() * 2 * dof());
+    EXPECT_TRUE(midpoint_terms(functions,
+                               system,
+                               x.data(),
+                               x.data() + dof(),
+                               out.data(),
+                               jacobian ? jacobian->data() : nullptr));
+    return out;
   }
-  void discrete_lagrangian(double h, const double* x, double* gradient, double* hessian) const {
-    carnot::discrete_lagrangian(functions(), this, h, x, gradient, hessian);
-  }
-  static const TranscriptionFunctions& functions() {
-    return dynamics_calls::transcription_of<Calls>();
+  Numbers gradient(double h, const Numbers& x, Numbers* hessian = nullptr) const {
+    Numbers out(unknowns());
+    if (hessian) hessian->resize(out.size() * out.size());
+    discrete_lagrangian(
+        functions, system, h, x.data(), out.data(), hessian ? hessian->data() : nullptr);
+    return out;
   }
 };
+
+// Uniform in [-scale, scale].
+Numbers random_numbers(int count, test::Generator& generator, double scale = 1) {
+  std::uniform_real_distribution<double> uniform(-scale, scale);
+  Numbers numbers(count);
+  for (double& number : numbers) number = uniform(generator);
+  return numbers;
+}
+
+// Derivative of a vector function along unit vector i.
+Numbers difference(const std::function<Numbers(const Numbers&)>& f, const Numbers& x, int i) {
+  const auto at = [&](double d) {
+    Numbers shifted = x;
+    shifted[i] += d;
+    return f(shifted);
+  };
+  const Numbers right = at(kStep), left = at(-kStep);
+  const Numbers far_right = at(2 * kStep), far_left = at(-2 * kStep);
+  Numbers slope(right.size());
+  for (std::size_t k = 0; k < slope.size(); ++k) {
+    slope[k] = (8 * (right[k] - left[k]) - (far_right[k] - far_left[k])) / (12 * kStep);
+  }
+  return slope;
+}
+
+// Every stride-th number from the first on.
+Numbers part(const Numbers& all, int first, int count, int stride = 1) {
+  Numbers some(count);
+  for (int k = 0; k < count; ++k) some[k] = all[first + k * stride];
+  return some;
+}
+
+double size(const Numbers& x) { return test::largest_change(x, Numbers(x.size())); }
+
+void expect_exact_jacobian(const Transcription& transcription, const Numbers& x) {
+  const int columns = 2 * transcription.dof();
+  Numbers jacobian;
+  const Numbers values = transcription.terms(x, &jacobian);
+  EXPECT_LE(test::largest_change(values, transcription.terms(x)), 64 * kEps);
+  const auto terms = [&](const Numbers& y) { return transcription.terms(y); };
+  for (int i = 0; i < columns; ++i) {
+    const Numbers column = part(jacobian, i, transcription.term_count(), columns);
+    EXPECT_LE(test::largest_change(difference(terms, x, i), column), kDifferences);
+  }
+}
+
+// The Hessian against the gradient, and against its transpose.
+void expect_exact_hessian(const Transcription& transcription, double h, const Numbers& x) {
+  const int m = transcription.unknowns();
+  Numbers hessian;
+  const Numbers slope = transcription.gradient(h, x, &hessian);
+  EXPECT_LE(test::largest_change(slope, transcription.gradient(h, x)), 64 * kEps);
+  const auto gradient = [&](const Numbers& y) { return transcription.gradient(h, y); };
+  for (int i = 0; i < m; ++i) {
+    const Numbers column = part(hessian, i * m, m);
+    EXPECT_LE(test::largest_change(column, part(hessian, i, m, m)), 64 * kEps);
+    EXPECT_LE(test::largest_change(difference(gradient, x, i), column), kDifferences);
+  }
+}
 
 template <class Scene>
 class MidpointTest : public ::testing::Test {
@@ -71,23 +155,20 @@ class MidpointTest : public ::testing::Test {
   using System = std::decay_t<decltype(dynamics_calls::transcription(make_system(Scene{})))>;
   static constexpr int kDof = Scene::kDof;
   static constexpr int kMultipliers = System::kMultipliers;
-  static constexpr int kTerms = kDof + kMultipliers + 1;
-  static constexpr int kUnknowns = 2 * kDof + kMultipliers;
-  using Unknowns = Vector<double, kUnknowns>;
 
   const System system_ = dynamics_calls::transcription(make_system(test::uneven<Scene>()));
   const Calls<Scene> calls_{};
+  const Transcription transcription_{dynamics_calls::transcription_of<Calls<Scene>>(), &calls_};
   test::Generator generator_{1};
 
-  [[nodiscard]] Vector<double, kTerms> terms(const Vector<double, 2 * kDof>& x) const {
-    Vector<double, kTerms> out;
-    EXPECT_TRUE(calls_.midpoint(x.data(), x.data() + kDof, out.data(), nullptr));
-    return out;
-  }
-  [[nodiscard]] Unknowns gradient(double h, const Unknowns& x) const {
-    Unknowns out;
-    calls_.discrete_lagrangian(h, x.data(), out.data(), nullptr);
-    return out;
+  // P lambda, which is zero without a gauge.
+  [[nodiscard]] Vector<double, kMultipliers> gauge_force(
+      const Vector<double, kDof>& q, const Vector<double, kMultipliers>& lambda) const {
+    if constexpr (dynamics_calls::HasGauge<std::decay_t<decltype(system_.scene())>>) {
+      return product(system_.scene().gauge(q), lambda);
+    } else {
+      return filled<kMultipliers>(0.0);
+    }
   }
 };
 using MidpointScenes = ::testing::Types<scenes::VehicleCosine, scenes::HeisenbergGroup>;
@@ -101,96 +182,63 @@ using DerivativeScenes =
     ::testing::Types<scenes::VehicleCosine, scenes::HeisenbergGroup, WeightedBrockett>;
 TYPED_TEST_SUITE(MidpointDerivativesTest, DerivativeScenes, test::SceneNames);
 
-// Derivative of a vector function along unit vector i.
-template <class F, class X>
-auto difference(const F& f, const X& x, int i) {
-  const auto at = [&](double d) {
-    X shifted = x;
-    shifted[i] += d;
-    return f(shifted);
-  };
-  return ((8 * (at(kStep) - at(-kStep)) - (at(2 * kStep) - at(-2 * kStep))) / (12 * kStep)).eval();
-}
-
 TYPED_TEST(MidpointDerivativesTest, JacobianAgreesWithDifferences) {
-  constexpr int kColumns = 2 * TypeParam::kDof;
-  constexpr int kRows = TestFixture::kTerms;
-  using RowMajor = Eigen::Matrix<double, kRows, kColumns, Eigen::RowMajor>;
   for (int sample = 0; sample < 20; ++sample) {
-    const auto x = test::random_vector<kColumns>(this->generator_);
-    Vector<double, kRows> values;
-    RowMajor jacobian;
-    ASSERT_TRUE(this->calls_.midpoint(
-        x.data(), x.data() + TypeParam::kDof, values.data(), jacobian.data()));
-    EXPECT_LE((values - this->terms(x)).cwiseAbs().maxCoeff(), 64 * kEps);
-    for (int i = 0; i < kColumns; ++i) {
-      const auto column = difference([&](const auto& y) { return this->terms(y); }, x, i);
-      EXPECT_LE((column - jacobian.col(i)).cwiseAbs().maxCoeff(), kDifferences);
-    }
+    expect_exact_jacobian(this->transcription_,
+                          random_numbers(2 * TypeParam::kDof, this->generator_));
   }
 }
 
 // |r|^2 = v'M v where G v = 0; c = G v; the last term is V.
 TYPED_TEST(MidpointTest, TermsMakeTheLagrangian) {
   constexpr int n = TypeParam::kDof;
-  constexpr int k = TestFixture::kMultipliers;
   for (int sample = 0; sample < 20; ++sample) {
-    auto x = test::random_vector<2 * n>(this->generator_, 2);
-    const Vector<double, n> q = x.template head<n>();
-    Vector<double, n> v = x.template tail<n>();
-    const Vector<double, k> g = this->system_.constraint(q, v);
-    EXPECT_LE((this->terms(x).template segment<k>(n) - g).cwiseAbs().maxCoeff(), 16 * kEps);
+    Numbers x = random_numbers(2 * n, this->generator_, 2);
+    const Vector<double, n> q = vector_at<n>(x.data());
+    Vector<double, n> v = vector_at<n>(x.data() + n);
+    const auto g = this->system_.constraint(q, v);
+    Numbers terms = this->transcription_.terms(x);
+    for (int j = 0; j < g.size(); ++j) EXPECT_NEAR(terms[n + j], g[j], 16 * kEps);
     ASSERT_EQ(this->system_.project(q, v), RateStatus::kOk);
-    x.template tail<n>() = v;
-    const auto terms = this->terms(x);
-    const double lagrangian =
-        0.5 * terms.template head<n>().squaredNorm() - terms[TestFixture::kTerms - 1];
+    store(v, x.data() + n);
+    terms = this->transcription_.terms(x);
+    double lagrangian = -terms.back();
+    for (int j = 0; j < n; ++j) lagrangian += 0.5 * terms[j] * terms[j];
     EXPECT_NEAR(lagrangian, this->system_.lagrangian(q, v), 256 * kEps);
   }
 }
 
 // The gradient against F_d itself.
 TYPED_TEST(MidpointDerivativesTest, GradientAgreesWithDifferences) {
-  constexpr int kSize = TestFixture::kUnknowns;
   constexpr int n = TypeParam::kDof;
   constexpr int k = TestFixture::kMultipliers;
   constexpr double h = 0.5;
-  const auto discrete = [&](const auto& x) {
-    const Vector<double, n> q = 0.5 * (x.template head<n>() + x.template segment<n>(n));
-    const Vector<double, n> v = (x.template segment<n>(n) - x.template head<n>()) / h;
-    const Vector<double, k> lambda = x.template tail<k>();
-    double value = this->system_.lagrangian(q, v) - lambda.dot(this->system_.constraint(q, v));
-    if constexpr (dynamics_calls::HasGauge<std::decay_t<decltype(this->system_.scene())>>) {
-      value -= 0.5 * lambda.dot(this->system_.scene().gauge(q) * lambda);
+  const auto discrete = [&](const Numbers& x) {
+    Vector<double, n> q, v;
+    for (int j = 0; j < n; ++j) {
+      q[j] = 0.5 * (x[j] + x[n + j]);
+      v[j] = (x[n + j] - x[j]) / h;
     }
-    return Vector<double, 1>(Vector<double, 1>::Constant(h * value));
+    const Vector<double, k> lambda = vector_at<k>(x.data() + 2 * n);
+    const double value = this->system_.lagrangian(q, v) -
+                         dot<double, k>(lambda, this->system_.constraint(q, v)) -
+                         0.5 * dot<double, k>(lambda, this->gauge_force(q, lambda));
+    return Numbers{h * value};
   };
   for (int sample = 0; sample < 10; ++sample) {
-    const auto x = test::random_vector<kSize>(this->generator_);
-    const auto slope = this->gradient(h, x);
-    for (int i = 0; i < kSize; ++i) {
-      EXPECT_NEAR(slope[i], difference(discrete, x, i)[0], kDifferences);
+    const Numbers x = random_numbers(2 * n + k, this->generator_);
+    const Numbers slope = this->transcription_.gradient(h, x);
+    for (std::size_t i = 0; i < slope.size(); ++i) {
+      EXPECT_NEAR(slope[i], difference(discrete, x, static_cast<int>(i))[0], kDifferences);
     }
   }
 }
 
-// The Hessian against the gradient.
 TYPED_TEST(MidpointDerivativesTest, HessianAgreesWithDifferencesAndIsSymmetric) {
-  constexpr int kSize = TestFixture::kUnknowns;
-  constexpr double h = 0.5;
-  using Square = Matrix<double, kSize, kSize>;
   for (int sample = 0; sample < 10; ++sample) {
-    const auto x = test::random_vector<kSize>(this->generator_);
-    Vector<double, kSize> slope;
-    Square hessian;
-    this->calls_.discrete_lagrangian(h, x.data(), slope.data(), hessian.data());
-    const double scale = std::max(1.0, hessian.cwiseAbs().maxCoeff());
-    EXPECT_LE((slope - this->gradient(h, x)).cwiseAbs().maxCoeff(), 64 * kEps * scale);
-    EXPECT_LE((hessian - hessian.transpose()).cwiseAbs().maxCoeff(), 64 * kEps * scale);
-    for (int i = 0; i < kSize; ++i) {
-      const auto column = difference([&](const auto& y) { return this->gradient(h, y); }, x, i);
-      EXPECT_LE((column - hessian.col(i)).cwiseAbs().maxCoeff(), kDifferences * scale);
-    }
+    expect_exact_hessian(this->transcription_,
+                         0.5,
+                         random_numbers(this->transcription_.unknowns(), this->generator_));
   }
 }
 
@@ -199,16 +247,18 @@ TYPED_TEST(MidpointDerivativesTest, DerivativeByTheMultipliersIsTheConstraint) {
   constexpr int n = TypeParam::kDof;
   constexpr int k = TestFixture::kMultipliers;
   constexpr double h = 0.5;
-  const auto x = test::random_vector<TestFixture::kUnknowns>(this->generator_);
-  const Vector<double, n> q0 = x.template head<n>();
-  const Vector<double, n> q1 = x.template segment<n>(n);
-  const Vector<double, n> qm = 0.5 * (q0 + q1);
-  const Vector<double, n> v = (q1 - q0) / h;
-  Vector<double, k> g = this->system_.constraint(qm, v);
-  if constexpr (dynamics_calls::HasGauge<std::decay_t<decltype(this->system_.scene())>>) {
-    g += this->system_.scene().gauge(qm) * x.template tail<k>();
+  const Numbers x = random_numbers(2 * n + k, this->generator_);
+  Vector<double, n> qm, v;
+  for (int j = 0; j < n; ++j) {
+    qm[j] = 0.5 * (x[j] + x[n + j]);
+    v[j] = (x[n + j] - x[j]) / h;
   }
-  EXPECT_LE((this->gradient(h, x).template tail<k>() + h * g).cwiseAbs().maxCoeff(), 64 * kEps);
+  const Vector<double, k> g = this->system_.constraint(qm, v);
+  const Vector<double, k> force = this->gauge_force(qm, vector_at<k>(x.data() + 2 * n));
+  const Numbers gradient = this->transcription_.gradient(h, x);
+  for (int j = 0; j < k; ++j) {
+    EXPECT_NEAR(gradient[2 * n + j], -h * (g[j] + force[j]), 64 * kEps);
+  }
 }
 
 // A step of the midpoint rule (Gauss, s = 1) is a stationary interval: p0 = -D1 F_d and
@@ -225,19 +275,24 @@ TYPED_TEST(MidpointTest, MidpointRuleIsTheDiscreteLegendreTransform) {
       const auto before = test::random_state<n>(this->generator_);
       auto after = before;
       ASSERT_EQ(step.step(0, h, after).status, StepStatus::kOk);
-      const Vector<double, n> qm = step.stages().template topRows<n>();
-      const Vector<double, n> pm = step.stages().template bottomRows<n>();
-      const Vector<double, n> v = step.increments().template topRows<n>() / h;
+      Vector<double, n> qm, pm, v;
+      for (int j = 0; j < n; ++j) {
+        qm[j] = step.stages()(j, 0);
+        pm[j] = step.stages()(n + j, 0);
+        v[j] = step.increments()(j, 0) / h;
+      }
       Vector<double, k> lambda;
       ASSERT_EQ(this->system_.multipliers(qm, pm, v, lambda), RateStatus::kOk);
-      Vector<double, 2 * n + k> x;
-      x << before.value.template head<n>(), after.value.template head<n>(), lambda;
-      const auto gradient = this->gradient(h, x);
-      const Vector<double, n> p0 = -gradient.template head<n>();
-      const Vector<double, n> p1 = gradient.template segment<n>(n);
-      EXPECT_LE((p0 - before.value.template tail<n>()).cwiseAbs().maxCoeff(), tolerance);
-      EXPECT_LE((p1 - after.value.template tail<n>()).cwiseAbs().maxCoeff(), tolerance);
-      EXPECT_LE(gradient.template tail<k>().cwiseAbs().maxCoeff(), tolerance);
+      Numbers x(2 * n + k);
+      std::copy_n(before.value.data(), n, x.data());
+      std::copy_n(after.value.data(), n, x.data() + n);
+      store(lambda, x.data() + 2 * n);
+      const Numbers gradient = this->transcription_.gradient(h, x);
+      for (int j = 0; j < n; ++j) {
+        EXPECT_NEAR(-gradient[j], before.value[n + j], tolerance);
+        EXPECT_NEAR(gradient[n + j], after.value[n + j], tolerance);
+      }
+      EXPECT_LE(size(part(gradient, 2 * n, k)), tolerance);
     }
   }
 }
@@ -282,37 +337,34 @@ struct Separate {
 };
 
 // Numbers of kTranscriptionLanes intervals side by side, `count` of each.
-using Packed = std::vector<double>;
+using Packed = Numbers;
 Packed packed(int count) { return Packed(static_cast<std::size_t>(count) * kTranscriptionLanes); }
-std::vector<double> lane(const Packed& from, int l) {
-  std::vector<double> own;
+Numbers lane(const Packed& from, int l) {
+  Numbers own;
   for (std::size_t i = l; i < from.size(); i += kTranscriptionLanes) own.push_back(from[i]);
   return own;
 }
 // The packed sine and cosine are good to 2 ulp, and sums are contracted in another way; that is
 // enlarged by the condition of M and of F'F, which is up to a hundred.
 constexpr double kPackedRoundOff = 1000 * kEps;
-void expect_same(const std::vector<double>& a, const std::vector<double>& b) {
+void expect_same(const Numbers& a, const Numbers& b) {
   ASSERT_EQ(a.size(), b.size());
-  double size = 1;
-  for (const double x : b) size = std::max(size, std::abs(x));
-  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], kPackedRoundOff * size);
+  const double tolerance = kPackedRoundOff * std::max(1.0, size(b));
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], tolerance);
 }
 
 // Eight intervals side by side against one by one. An angle for which packs have no sine is in one
 // of them, in every second sample.
-TYPED_TEST(MidpointDerivativesTest, SideBySideIsOneByOne) {
-  constexpr int n = TypeParam::kDof;
-  constexpr int kCount = TestFixture::kTerms;
-  constexpr int m = TestFixture::kUnknowns;
+void expect_side_by_side(const Transcription& one, test::Generator& generator) {
   constexpr double kFar = 4e6;
   constexpr double h = 0.3;
-  const TranscriptionFunctions& f = this->calls_.functions();
+  const int n = one.dof(), count = one.term_count(), m = one.unknowns();
+  const TranscriptionFunctions& f = one.functions;
   ASSERT_NE(f.packed_entries, nullptr);
   for (int sample = 0; sample < 10; ++sample) {
     Packed x = packed(m);
     for (int l = 0; l < kTranscriptionLanes; ++l) {
-      const auto own = test::random_vector<m>(this->generator_);
+      const Numbers own = random_numbers(m, generator);
       for (int i = 0; i < m; ++i) x[i * kTranscriptionLanes + l] = own[i];
     }
     if (sample % 2 == 1) {
@@ -321,123 +373,90 @@ TYPED_TEST(MidpointDerivativesTest, SideBySideIsOneByOne) {
       x[(2 * n - 1) * kTranscriptionLanes + 5] += kFar;
     }
     const double* const v = x.data() + n * kTranscriptionLanes;
-    Packed terms = packed(kCount), slopes = packed(kCount * 2 * n), again = packed(kCount);
+    Packed terms = packed(count), slopes = packed(count * 2 * n), again = packed(count);
     Packed gradient = packed(m), hessian = packed(m * m), first = packed(m);
-    ASSERT_TRUE(packed_midpoint_terms(f, &this->calls_, x.data(), v, terms.data(), slopes.data()));
-    ASSERT_TRUE(packed_midpoint_terms(f, &this->calls_, x.data(), v, again.data(), nullptr));
-    packed_discrete_lagrangian(f, &this->calls_, h, x.data(), gradient.data(), hessian.data());
-    packed_discrete_lagrangian(f, &this->calls_, h, x.data(), first.data(), nullptr);
+    ASSERT_TRUE(packed_midpoint_terms(f, one.system, x.data(), v, terms.data(), slopes.data()));
+    ASSERT_TRUE(packed_midpoint_terms(f, one.system, x.data(), v, again.data(), nullptr));
+    packed_discrete_lagrangian(f, one.system, h, x.data(), gradient.data(), hessian.data());
+    packed_discrete_lagrangian(f, one.system, h, x.data(), first.data(), nullptr);
     for (int l = 0; l < kTranscriptionLanes; ++l) {
-      const std::vector<double> own = lane(x, l);
-      std::vector<double> a(kCount), b(kCount * 2 * n), c(m), d(m * m);
-      ASSERT_TRUE(this->calls_.midpoint(own.data(), own.data() + n, a.data(), b.data()));
-      expect_same(lane(terms, l), a);
-      expect_same(lane(again, l), a);
-      expect_same(lane(slopes, l), b);
-      this->calls_.discrete_lagrangian(h, own.data(), c.data(), d.data());
-      expect_same(lane(gradient, l), c);
-      expect_same(lane(first, l), c);
-      expect_same(lane(hessian, l), d);
+      const Numbers own = lane(x, l);
+      Numbers own_slopes, own_hessian;
+      const Numbers own_terms = one.terms(own, &own_slopes);
+      expect_same(lane(terms, l), own_terms);
+      expect_same(lane(again, l), own_terms);
+      expect_same(lane(slopes, l), own_slopes);
+      const Numbers own_gradient = one.gradient(h, own, &own_hessian);
+      expect_same(lane(gradient, l), own_gradient);
+      expect_same(lane(first, l), own_gradient);
+      expect_same(lane(hessian, l), own_hessian);
     }
   }
+}
+TYPED_TEST(MidpointDerivativesTest, SideBySideIsOneByOne) {
+  expect_side_by_side(this->transcription_, this->generator_);
 }
 
 // One interval that cannot be evaluated is told, and the others are right all the same.
-TYPED_TEST(MidpointDerivativesTest, OneFailureSideBySideDoesNotSpoilTheOthers) {
-  constexpr int n = TypeParam::kDof;
-  constexpr int kCount = TestFixture::kTerms;
+void expect_one_failure(const Transcription& one, test::Generator& generator) {
   constexpr int kBroken = 3;
-  Packed x = packed(2 * n);
-  for (double& number : x) number = std::uniform_real_distribution<double>(-1, 1)(this->generator_);
+  const int n = one.dof();
+  Packed x = random_numbers(2 * n * kTranscriptionLanes, generator);
   for (int j = 0; j < n; ++j) {
     x[j * kTranscriptionLanes + kBroken] = std::numeric_limits<double>::quiet_NaN();
   }
-  Packed terms = packed(kCount);
+  Packed terms = packed(one.term_count());
   const double* const v = x.data() + n * kTranscriptionLanes;
-  const bool good = packed_midpoint_terms(
-      this->calls_.functions(), &this->calls_, x.data(), v, terms.data(), nullptr);
+  const bool good =
+      packed_midpoint_terms(one.functions, one.system, x.data(), v, terms.data(), nullptr);
   for (int l = 0; l < kTranscriptionLanes; ++l) {
-    const std::vector<double> own = lane(x, l);
-    std::vector<double> a(kCount);
-    const bool found = this->calls_.midpoint(own.data(), own.data() + n, a.data(), nullptr);
+    const Numbers own = lane(x, l);
     if (l == kBroken) {
-      EXPECT_EQ(good, found);
-      continue;
+      Numbers unused(one.term_count());
+      EXPECT_EQ(good,
+                midpoint_terms(
+                    one.functions, one.system, own.data(), own.data() + n, unused.data(), nullptr));
+    } else {
+      expect_same(lane(terms, l), one.terms(own));
     }
-    ASSERT_TRUE(found);
-    expect_same(lane(terms, l), a);
   }
+}
+TYPED_TEST(MidpointDerivativesTest, OneFailureSideBySideDoesNotSpoilTheOthers) {
+  expect_one_failure(this->transcription_, this->generator_);
 }
 
 // A scene that has no formulas for packs, and one with more coordinates than packs are made for.
-template <int n>
-void expect_one_by_one() {
-  constexpr int kTerms = n + 2;
-  constexpr int m = 2 * n + 1;
-  const TranscriptionFunctions& f = Separate<n>::kFunctions;
+void expect_one_by_one(const Transcription& one) {
+  const int n = one.dof(), count = one.term_count(), m = one.unknowns();
+  const TranscriptionFunctions& f = one.functions;
   test::Generator generator(n);
-  Packed x = packed(m);
-  for (double& number : x) number = std::uniform_real_distribution<double>(-1, 1)(generator);
-  Packed terms = packed(kTerms), slopes = packed(kTerms * 2 * n), gradient = packed(m);
+  const Packed x = random_numbers(m * kTranscriptionLanes, generator);
+  Packed terms = packed(count), slopes = packed(count * 2 * n), gradient = packed(m);
   const double* const v = x.data() + n * kTranscriptionLanes;
-  ASSERT_TRUE(packed_midpoint_terms(f, nullptr, x.data(), v, terms.data(), slopes.data()));
-  packed_discrete_lagrangian(f, nullptr, 0.5, x.data(), gradient.data(), nullptr);
+  ASSERT_TRUE(packed_midpoint_terms(f, one.system, x.data(), v, terms.data(), slopes.data()));
+  packed_discrete_lagrangian(f, one.system, 0.5, x.data(), gradient.data(), nullptr);
   for (int l = 0; l < kTranscriptionLanes; ++l) {
-    const std::vector<double> own = lane(x, l);
-    std::vector<double> a(kTerms), b(kTerms * 2 * n), c(m);
-    ASSERT_TRUE(midpoint_terms(f, nullptr, own.data(), own.data() + n, a.data(), b.data()));
-    EXPECT_EQ(lane(terms, l), a);
-    EXPECT_EQ(lane(slopes, l), b);
-    discrete_lagrangian(f, nullptr, 0.5, own.data(), c.data(), nullptr);
-    EXPECT_EQ(lane(gradient, l), c);
+    const Numbers own = lane(x, l);
+    Numbers own_slopes;
+    EXPECT_EQ(lane(terms, l), one.terms(own, &own_slopes));
+    EXPECT_EQ(lane(slopes, l), own_slopes);
+    EXPECT_EQ(lane(gradient, l), one.gradient(0.5, own));
   }
 }
 TEST(MidpointRows, WithoutPacksAreOneByOne) {
-  expect_one_by_one<7>();
-  expect_one_by_one<16>();
-}
-
-template <int n>
-void expect_exact_derivatives() {
-  constexpr int kTerms = n + 2;
-  constexpr int kUnknowns = 2 * n + 1;
-  constexpr double h = 0.5;
-  const TranscriptionFunctions& functions = Separate<n>::kFunctions;
-  test::Generator generator(n);
-  const Vector<double, 2 * n> at = test::random_vector<2 * n>(generator);
-  const auto terms = [&](const Vector<double, 2 * n>& y) {
-    Vector<double, kTerms> out;
-    EXPECT_TRUE(midpoint_terms(functions, nullptr, y.data(), y.data() + n, out.data(), nullptr));
-    return out;
-  };
-  Vector<double, kTerms> values;
-  Eigen::Matrix<double, kTerms, 2 * n, Eigen::RowMajor> jacobian;
-  ASSERT_TRUE(
-      midpoint_terms(functions, nullptr, at.data(), at.data() + n, values.data(), jacobian.data()));
-  EXPECT_LE((values - terms(at)).cwiseAbs().maxCoeff(), 64 * kEps);
-  for (int i = 0; i < 2 * n; ++i) {
-    EXPECT_LE((difference(terms, at, i) - jacobian.col(i)).cwiseAbs().maxCoeff(), kDifferences);
-  }
-  using Unknowns = Vector<double, kUnknowns>;
-  const auto gradient = [&](const Unknowns& y) {
-    Unknowns out;
-    discrete_lagrangian(functions, nullptr, h, y.data(), out.data(), nullptr);
-    return out;
-  };
-  const Unknowns x = test::random_vector<kUnknowns>(generator);
-  Unknowns slope;
-  Matrix<double, kUnknowns, kUnknowns> hessian;
-  discrete_lagrangian(functions, nullptr, h, x.data(), slope.data(), hessian.data());
-  EXPECT_LE((slope - gradient(x)).cwiseAbs().maxCoeff(), 64 * kEps);
-  for (int i = 0; i < kUnknowns; ++i) {
-    EXPECT_LE((difference(gradient, x, i) - hessian.col(i)).cwiseAbs().maxCoeff(), kDifferences);
-  }
+  expect_one_by_one({Separate<7>::kFunctions});
+  expect_one_by_one({Separate<16>::kFunctions});
 }
 
 TEST(MidpointRows, OfEveryLengthHaveExactDerivatives) {
-  expect_exact_derivatives<7>();   // 8
-  expect_exact_derivatives<8>();   // 16
-  expect_exact_derivatives<16>();  // 64
+  for (const TranscriptionFunctions& functions : {Separate<7>::kFunctions,      // rows of 8
+                                                  Separate<8>::kFunctions,      // 16
+                                                  Separate<16>::kFunctions}) {  // 64
+    const Transcription transcription{functions};
+    test::Generator generator(functions.dof);
+    expect_exact_jacobian(transcription, random_numbers(2 * functions.dof, generator));
+    expect_exact_hessian(transcription, 0.5, random_numbers(transcription.unknowns(), generator));
+  }
 }
 
 }  // namespace
