@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -10,6 +11,7 @@
 #include "carnot/scenes/vehicle.h"
 #include "carnot/step/runge_kutta.h"
 #include "carnot/tableau/gauss_tableau.h"
+#include "testing/distance.h"
 #include "testing/generalized_scenes.h"
 #include "testing/runs.h"
 
@@ -17,7 +19,9 @@ namespace carnot::generalized_hamiltonian_test {
 namespace {
 
 using CanonicalVehicle = test::AsGeneralized<scenes::Vehicle>;
+using test::distance;
 using test::InBasis;
+using test::norm;
 using Vehicle = VelocityConstraints<scenes::Vehicle>;
 using VehicleAnywhere = InBasis<CanonicalVehicle>;
 using Anywhere = GeneralizedHamiltonian<VehicleAnywhere>;
@@ -26,12 +30,12 @@ constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 const scenes::Vehicle kVehicle = test::uneven<scenes::Vehicle>();
 const CanonicalVehicle kCanonical{kVehicle};
-const VehicleAnywhere kOwn{kCanonical, Matrix<double, 10, 10>::Identity()};
+const VehicleAnywhere kOwn{kCanonical, identity<10, double>()};
 
 // The paper's start, lambda = 0.
 Vector<double, 10> vehicle_start() {
-  Vector<double, 10> z = Vector<double, 10>::Zero();
-  z.head<8>() = test::vehicle_start(Vehicle(kVehicle)).value;
+  Vector<double, 10> z = filled<10>(0.0);
+  store(test::vehicle_start(Vehicle(kVehicle)).value, z.data());
   return z;
 }
 
@@ -39,9 +43,9 @@ Vector<double, 10> vehicle_start() {
 template <class System>
 Vector<double, System::kSize> lifted(const System& system,
                                      const State<double, System::kDof>& state) {
-  const Vector<double, System::kDof> q = state.value.template head<System::kDof>();
-  const Vector<double, System::kDof> p = state.value.template tail<System::kDof>();
-  Vector<double, System::kAlgebraic> y = Vector<double, System::kAlgebraic>::Zero();
+  const auto q = part<0, System::kDof>(state.value);
+  const auto p = part<System::kDof, System::kDof>(state.value);
+  auto y = filled<System::kAlgebraic>(0.0);
   Rate<double, System::kDof> rate;
   EXPECT_EQ(system.rate(0.0, q, p, y, rate), RateStatus::kOk);
   return system.from_darboux(q, p, y);
@@ -65,15 +69,16 @@ Vector<double, 10> vehicle_end(const Tableau<double>& tableau, const StepPlan& p
   auto method = method_on(system, tableau);
   auto state = test::vehicle_start(system);
   EXPECT_TRUE(flow(method, plan, state).completed());
-  const Vector<double, 4> q = state.value.head<4>();
-  const Vector<double, 4> p = state.value.tail<4>();
+  const Vector<double, 4> q = part<0, 4>(state.value);
+  const Vector<double, 4> p = part<4, 4>(state.value);
   Vector<double, 2> u;
   Rate<double, 4> rate;
   Vector<double, 2> lambda;
   EXPECT_EQ(system.rate(0.0, q, p, u, rate), RateStatus::kOk);
   EXPECT_EQ(system.multipliers(0.0, q, p, u, lambda), RateStatus::kOk);
   Vector<double, 10> z;
-  z << q, p, lambda;
+  store(state.value, z.data());
+  store(lambda, z.data() + 8);
   return z;
 }
 
@@ -85,7 +90,7 @@ Vector<double, 10> generalized_end(const VehicleAnywhere& scene,
   auto method = method_on(system, tableau);
   auto state = start_at(system, scene.from_original(vehicle_start()));
   EXPECT_TRUE(flow(method, plan, state).completed());
-  return scene.basis * lifted(system, state);
+  return product(scene.basis, lifted(system, state));
 }
 
 // Prop. 4: Runge-Kutta methods commute with linear maps, so the basis shows by its condition only.
@@ -112,14 +117,16 @@ Matrix<double, System::kSize, 2 * System::kDof> tangent_of_graph(
   constexpr int m = System::kAlgebraic;
   using J = Jet<double, 2 * n>;
   const Vector<J, 2 * n> x = seeded(state.value);
-  const Vector<J, n> q = x.template head<n>();
-  const Vector<J, n> p = x.template tail<n>();
-  Vector<J, m> y = Vector<J, m>::Constant(J(0));
+  const Vector<J, n> q = part<0, n>(x);
+  const Vector<J, n> p = part<n, n>(x);
+  Vector<J, m> y = filled<m>(J(0));
   Rate<J, n> rate;
   EXPECT_EQ(system.rate(J(0), q, p, y, rate), RateStatus::kOk);
   const Vector<J, System::kSize> z = system.from_darboux(q, p, y);
   Matrix<double, System::kSize, 2 * n> tangent;
-  for (int i = 0; i < System::kSize; ++i) tangent.row(i) = z[i].v.transpose();
+  for (int i = 0; i < System::kSize; ++i) {
+    for (int j = 0; j < 2 * n; ++j) tangent(i, j) = z[i].v[j];
+  }
   return tangent;
 }
 
@@ -136,17 +143,17 @@ void expect_form_is_preserved(const Scene& scene,
   auto method = method_on(system, tableau);
   auto state = start_at(system, start);
   const Matrix<double, Scene::kSize, kSize> before = tangent_of_graph(system, state);
-  Compensated<Matrix<double, kSize, kSize>> m{Matrix<double, kSize, kSize>::Identity(),
-                                              Matrix<double, kSize, kSize>::Zero()};
+  Compensated<Matrix<double, kSize, kSize>> m{identity<kSize, double>(), filled<kSize, kSize>(0.0)};
   const auto go_on = [](long, const auto&, const auto&) { return true; };
   ASSERT_TRUE(tangent_flow(method, StepPlan::equal(0, 3, 30), state, m, go_on).completed());
-  const Matrix<double, Scene::kSize, kSize> after = tangent_of_graph(system, state) * m.value;
-  const Matrix<double, kSize, kSize> change =
-      after.transpose() * j * after - before.transpose() * j * before;
-  EXPECT_GT((after - before).norm(), 0.1 * before.norm()) << "something has moved";
+  const Matrix<double, Scene::kSize, kSize> after =
+      product(tangent_of_graph(system, state), m.value);
+  const Matrix<double, kSize, kSize> form = transposed_times(after, product(j, after));
+  const Matrix<double, kSize, kSize> expected = transposed_times(before, product(j, before));
+  EXPECT_GT(distance(after, before), 0.1 * norm(before)) << "something has moved";
   // Round-off of the products of N terms, by their own size.
-  const double tolerance = 10 * Scene::kSize * kEps * after.squaredNorm() * j.norm();
-  EXPECT_LE(change.cwiseAbs().maxCoeff(), tolerance);
+  const double tolerance = 10 * Scene::kSize * kEps * norm(after) * norm(after) * norm(j);
+  EXPECT_LE(test::largest_change(form, expected), tolerance);
 }
 
 TEST(GeneralizedHamiltonianTest, PresymplecticFormIsPreserved) {
@@ -167,14 +174,14 @@ TEST(GeneralizedHamiltonianTest, RateSolvesTheEquations) {
     Vector<double, 8> velocity;
     ASSERT_EQ(phase_rate(system, 0.0, state.value, y, velocity), RateStatus::kOk);
     const Vector<double, 10> z = lifted(system, state);
-    const Vector<double, 10> z_dot = tangent_of_graph(system, state) * velocity;
+    const Vector<double, 10> z_dot = product(tangent_of_graph(system, state), velocity);
     const Vector<double, 10> slope =
         gradient([&](const auto& x) { return scene.hamiltonian(x); }, z);
-    const Vector<double, 10> moved = scene.structure_matrix() * z_dot;
+    const Vector<double, 10> moved = product(scene.structure_matrix(), z_dot);
     // Two maps by A, of what H_z is made of.
     const double tolerance =
-        10 * std::pow(scene.condition(), 2) * kEps * std::max(1.0, z.squaredNorm());
-    EXPECT_LE((moved - slope).norm(), tolerance);
+        10 * std::pow(scene.condition(), 2) * kEps * std::max(1.0, norm(z) * norm(z));
+    EXPECT_LE(distance(moved, slope), tolerance);
   }
 }
 
@@ -185,15 +192,15 @@ TEST(GeneralizedHamiltonianTest, DarbouxCoordinatesAndBack) {
   const auto z = test::random_vector<10>(generator);
   const auto point = system.to_darboux(z);
   const double tolerance = 10 * scene.condition() * kEps;
-  EXPECT_LE((system.from_darboux(point.q, point.p, point.y) - z).norm(), tolerance);
+  EXPECT_LE(distance(system.from_darboux(point.q, point.p, point.y), z), tolerance);
   EXPECT_NEAR(system.hamiltonian(0.0, point.q, point.p, point.y),
               scene.hamiltonian(z),
               tolerance * scene.hamiltonian(z));
   // A canonical J keeps its coordinates.
   const auto own = Anywhere(kOwn).to_darboux(z);
-  EXPECT_EQ(own.q, z.head<4>());
-  EXPECT_EQ(own.p, (z.segment<4>(4)));
-  EXPECT_EQ(own.y, z.tail<2>());
+  EXPECT_EQ(test::largest_change(own.q, part<0, 4>(z)), 0);
+  EXPECT_EQ(test::largest_change(own.p, part<4, 4>(z)), 0);
+  EXPECT_EQ(test::largest_change(own.y, part<8, 2>(z)), 0);
 }
 
 // J without a kernel: nothing to solve.
@@ -206,9 +213,7 @@ struct Oscillator {
   }
   // z2' = 2 z1, z1' = -2 z2.
   [[nodiscard]] Matrix<double, 2, 2> structure_matrix() const {
-    Matrix<double, 2, 2> j;
-    j << 0, 0.5, -0.5, 0;
-    return j;
+    return Matrix<double, 2, 2>{{0, 0.5}, {-0.5, 0}};
   }
 };
 
@@ -220,12 +225,14 @@ TEST(GeneralizedHamiltonianTest, RegularStructure) {
   Vector<double, 0> y;
   Vector<double, 2> velocity;
   ASSERT_EQ(phase_rate(system, 0.0, state.value, y, velocity), RateStatus::kOk);
-  const Vector<double, 2> z_dot = system.basis() * velocity;
+  const Vector<double, 2> z_dot = product(system.basis(), velocity);
   EXPECT_NEAR(z_dot[0], -2 * 0.7, 4 * kEps);
   EXPECT_NEAR(z_dot[1], 2 * 0.3, 4 * kEps);
 
-  EXPECT_EQ(system.branch(0, state.value.head<1>(), state.value.tail<1>(), y, y), RateStatus::kOk);
-  EXPECT_EQ(system.regularity(0, state.value.head<1>(), state.value.tail<1>(), y).condition, 1);
+  const Vector<double, 1> q = part<0, 1>(state.value);
+  const Vector<double, 1> p = part<1, 1>(state.value);
+  EXPECT_EQ(system.branch(0, q, p, y, y), RateStatus::kOk);
+  EXPECT_EQ(system.regularity(0, q, p, y).condition, 1);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@
 #include "carnot/scenes/unicycle.h"
 #include "carnot/scenes/vehicle.h"
 #include "carnot/step/gauss.h"
-#include "testing/largest_change.h"
+#include "testing/distance.h"
 
 namespace carnot::make_kernel_test {
 namespace {

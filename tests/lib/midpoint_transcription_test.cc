@@ -14,7 +14,7 @@
 #include "carnot/system/system_of.h"
 #include "carnot/transcription/transcription_calls.h"
 #include "testing/control_scene_list.h"
-#include "testing/largest_change.h"
+#include "testing/distance.h"
 #include "testing/runs.h"
 
 namespace carnot::midpoint_transcription_test {

@@ -19,7 +19,7 @@
 #include "carnot/tableau/make_tableau.h"
 #include "carnot/tableau/order_conditions.h"
 #include "carnot/tableau/tableau_laws.h"
-#include "testing/largest_change.h"
+#include "testing/distance.h"
 
 namespace carnot::own_method_test {
 namespace {

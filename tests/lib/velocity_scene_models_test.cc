@@ -10,9 +10,12 @@
 
 #include "testing/attitude.h"
 #include "testing/charted_scenes.h"
+#include "testing/distance.h"
 
 namespace carnot::velocity_scene_models_test {
 namespace {
+
+using test::largest_change;
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr double kRoundOff = 64 * kEps;  // sums of some ten products of numbers up to 5
@@ -29,13 +32,21 @@ Vector<Along, n> path(const Vector<double, n>& q, const Vector<double, n>& v) {
   return x;
 }
 
-template <class M>
-auto values(const M& m) {
-  return m.unaryExpr([](const Along& x) { return x.a; }).eval();
+template <int rows, int cols>
+Matrix<double, rows, cols> values(const Matrix<Along, rows, cols>& m) {
+  Matrix<double, rows, cols> a;
+  for (int j = 0; j < cols; ++j) {
+    for (int i = 0; i < rows; ++i) a(i, j) = m(i, j).a;
+  }
+  return a;
 }
-template <class M>
-auto slopes(const M& m) {
-  return m.unaryExpr([](const Along& x) { return x.v[0]; }).eval();
+template <int rows, int cols>
+Matrix<double, rows, cols> slopes(const Matrix<Along, rows, cols>& m) {
+  Matrix<double, rows, cols> a;
+  for (int j = 0; j < cols; ++j) {
+    for (int i = 0; i < rows; ++i) a(i, j) = m(i, j).v[0];
+  }
+  return a;
 }
 
 // The middle of axle i, the car's being axle 0.
@@ -59,8 +70,8 @@ void expect_trailers() {
   for (int sample = 0; sample < kSamples; ++sample) {
     const auto q = test::random_vector<n>(generator, 3);
     const Vector<double, n> any = test::random_vector<n>(generator);
-    const Vector<double, n> v = scene.frame(q) * test::random_vector<2>(generator);
-    const Vector<double, 1 + count> g = scene.constraints(q) * any;
+    const Vector<double, n> v = product(scene.frame(q), test::random_vector<2>(generator));
+    const Vector<double, 1 + count> g = product(scene.constraints(q), any);
     const auto lines = info.drawing.body(q.data());
     std::vector<Polyline> wheels;
     std::copy_if(lines.begin(), lines.end(), std::back_inserter(wheels), [](const auto& line) {
@@ -101,15 +112,17 @@ Vector<double, 2 * n> rate_of_first(const Scene& scene,
                                     const Vector<double, 6>& q,
                                     const Vector<double, n>& p) {
   const VelocityConstraints<Scene> system(scene);
-  const Vector<double, Scene::kDof> place = q.template head<Scene::kDof>();
-  Vector<double, Scene::kDof> momentum = Vector<double, Scene::kDof>::Zero();
-  momentum.template head<n>() = p;
+  constexpr int kDof = Scene::kDof;
+  const Vector<double, kDof> place = part<0, kDof>(q);
+  Vector<double, kDof> momentum = filled<kDof>(0.0);
+  store(p, momentum.data());
   Vector<double, 2> u;
-  Rate<double, Scene::kDof> rate;
+  Rate<double, kDof> rate;
   EXPECT_EQ(system.rate(0.0, place, momentum, u, rate), RateStatus::kOk);
-  EXPECT_EQ(rate.p_dot.template tail<Scene::kDof - n>().norm(), 0) << "momentum appears";
+  for (int i = n; i < kDof; ++i) EXPECT_EQ(rate.p_dot[i], 0) << "momentum appears";
   Vector<double, 2 * n> first;
-  first << rate.q_dot.template head<n>(), rate.p_dot.template head<n>();
+  store(part<0, n>(rate.q_dot), first.data());
+  store(part<0, n>(rate.p_dot), first.data() + n);
   return first;
 }
 
@@ -122,12 +135,12 @@ TEST(TrailersTest, WithoutMomentumTheyFollow) {
     const auto one = rate_of_first<4>(scenes::Trailers<1>{}, q, p);
     const auto two = rate_of_first<4>(scenes::Trailers<2>{}, q, p);
     const auto three = rate_of_first<4>(scenes::Trailers<3>{}, q, p);
-    EXPECT_LE((two - one).cwiseAbs().maxCoeff(), kRoundOff);
-    EXPECT_LE((three - one).cwiseAbs().maxCoeff(), kRoundOff);
-    const Vector<double, 3> car = p.head<3>();
+    EXPECT_LE(largest_change(two, one), kRoundOff);
+    EXPECT_LE(largest_change(three, one), kRoundOff);
+    const Vector<double, 3> car = part<0, 3>(p);
     const auto alone = rate_of_first<3>(scenes::Unicycle{}, q, car);
     const auto pulling = rate_of_first<3>(scenes::Trailers<1>{}, q, car);
-    EXPECT_LE((pulling - alone).cwiseAbs().maxCoeff(), kRoundOff);
+    EXPECT_LE(largest_change(pulling, alone), kRoundOff);
   }
 }
 
@@ -139,11 +152,11 @@ TEST(SatelliteTest, BodyRatesAreThoseOfTheAttitude) {
     const auto v = test::random_vector<3>(generator);
     const auto x = path(q, v);
     const auto r = test::attitude(x[0], x[1], x[2]);
-    const Vector<double, 3> w = test::axis_of(values(r).transpose() * slopes(r));
-    EXPECT_LE((scene.body_rates(q) * v - w).cwiseAbs().maxCoeff(), kRoundOff);
-    EXPECT_NEAR((scene.constraints(q) * v)(0), w[2], kRoundOff);
+    const Vector<double, 3> w = test::axis_of(transposed_times(values(r), slopes(r)));
+    EXPECT_LE(largest_change(product(scene.body_rates(q), v), w), kRoundOff);
+    EXPECT_NEAR(product(scene.constraints(q), v)(0), w[2], kRoundOff);
     const double cost = scene.j1 * w[0] * w[0] + scene.j2 * w[1] * w[1] + w[2] * w[2];
-    EXPECT_NEAR(v.dot(scene.mass(q) * v), cost, kRoundOff);
+    EXPECT_NEAR(dot(v, product(scene.mass(q), v)), cost, kRoundOff);
   }
 }
 
@@ -155,12 +168,11 @@ TEST(PlateBallTest, RollsWithoutSlipOrSpin) {
     const auto v = test::random_vector<5>(generator);
     const auto x = path(q, v);
     const auto r = test::attitude(x[2], x[3], x[4]);
-    const Vector<double, 3> w = test::axis_of(slopes(r) * values(r).transpose());
+    const Vector<double, 3> w = test::axis_of(times_transposed(slopes(r), values(r)));
     // The lowest point of the ball, at -e_z from its centre, moves with the velocity c + w x
     // (-e_z).
-    const Vector<double, 3> centre(v[0], v[1], 0);
-    const Vector<double, 3> contact = centre + w.cross(Vector<double, 3>(0, 0, -1));
-    const Vector<double, 3> g = scene.constraints(q) * v;
+    const Vector<double, 2> contact(v[0] - w[1], v[1] + w[0]);
+    const Vector<double, 3> g = product(scene.constraints(q), v);
     EXPECT_NEAR(g[0], contact[1], kRoundOff);
     EXPECT_NEAR(g[1], -contact[0], kRoundOff);
     EXPECT_NEAR(g[2], w[2], kRoundOff);
@@ -193,7 +205,7 @@ TEST(FallingCatTest, ConstraintIsTheAngularMomentum) {
       const Vector<double, 2> moved = slopes(centres[i]);
       momentum += r[0] * moved[1] - r[1] * moved[0] + kInertia * turns[i];
     }
-    EXPECT_NEAR((scene.constraints(q) * v)(0), momentum, kRoundOff);
+    EXPECT_NEAR(product(scene.constraints(q), v)(0), momentum, kRoundOff);
   }
 }
 
@@ -230,12 +242,14 @@ TEST(EngelTest, FrameHasTheBracketsOfTheEngelAlgebra) {
   for (int sample = 0; sample < kSamples; ++sample) {
     const V q = test::random_vector<4>(generator, 2);
     const auto bracket = [&](int i, int j) -> V {
-      return slopes(field(j, path<4>(q, field(i, q)))) - slopes(field(i, path<4>(q, field(j, q))));
+      V along = slopes(field(j, path<4>(q, field(i, q))));
+      subtract_from(along, slopes(field(i, path<4>(q, field(j, q)))));
+      return along;
     };
-    EXPECT_LE((bracket(1, 2) - field(3, q)).cwiseAbs().maxCoeff(), kRoundOff);
-    EXPECT_LE((bracket(1, 3) - field(4, q)).cwiseAbs().maxCoeff(), kRoundOff);
+    EXPECT_LE(largest_change(bracket(1, 2), field(3, q)), kRoundOff);
+    EXPECT_LE(largest_change(bracket(1, 3), field(4, q)), kRoundOff);
     for (const auto& [i, j] : {std::array{2, 3}, {1, 4}, {2, 4}, {3, 4}}) {
-      EXPECT_LE(bracket(i, j).cwiseAbs().maxCoeff(), kRoundOff) << i << " " << j;
+      EXPECT_LE(largest_entry(bracket(i, j)), kRoundOff) << i << " " << j;
     }
   }
 }

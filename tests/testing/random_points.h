@@ -21,7 +21,10 @@ Vector<double, n> random_vector(Generator& generator, double scale = 1) {
 template <int rows, int cols>
 Matrix<double, rows, cols> random_matrix(Generator& generator, double scale = 1) {
   Matrix<double, rows, cols> m;
-  for (int j = 0; j < cols; ++j) m.col(j) = random_vector<rows>(generator, scale);
+  for (int j = 0; j < cols; ++j) {
+    const Vector<double, rows> column = random_vector<rows>(generator, scale);
+    for (int i = 0; i < rows; ++i) m(i, j) = column[i];
+  }
   return m;
 }
 
@@ -29,7 +32,9 @@ Matrix<double, rows, cols> random_matrix(Generator& generator, double scale = 1)
 template <int n>
 Matrix<double, n, n> random_positive_matrix(Generator& generator) {
   const Matrix<double, n, n> a = random_matrix<n, n>(generator);
-  return a * a.transpose() + 0.5 * Matrix<double, n, n>::Identity();
+  Matrix<double, n, n> square = times_transposed(a, a);
+  for (int i = 0; i < n; ++i) square(i, i) += 0.5;
+  return square;
 }
 
 }  // namespace carnot::test

@@ -1,10 +1,9 @@
 // Short cuts for tests that run a method on a scene from a random start.
 #pragma once
 
-#include <algorithm>
-
 #include "carnot/flow/flow.h"
 #include "carnot/system/velocity_constraints.h"
+#include "testing/distance.h"
 #include "testing/random_points.h"
 #include "testing/scene_list.h"
 
@@ -35,7 +34,7 @@ State<T, n> flipped(State<T, n> z) {
 template <class V>
 auto relative_distance(const V& a, const V& b) {
   using T = typename V::Scalar;
-  return (a - b).cwiseAbs().maxCoeff() / std::max(T(1), b.cwiseAbs().maxCoeff());
+  return largest_change(a, b) / maximum<T>(T(1), largest_entry(b));
 }
 
 // The paper's start on the vehicles: p = M q', lambda = 0, from q0 = (1, 0.5, 0.3, 0.8).
