@@ -4,12 +4,16 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <random>
 #include <vector>
+
+#include "carnot/numerics/jacobi_rotations.h"
 
 namespace carnot::symbolic_matrix_test {
 namespace {
@@ -46,12 +50,29 @@ class FrameTest : public ::testing::Test {
     return m;
   }
 
-  Eigen::MatrixXd at(const std::array<double, kVariables>& point, const SymbolicMatrix& m) {
-    Eigen::MatrixXd values(m.rows, m.columns);
-    for (int i = 0; i < m.rows; ++i) {
-      for (int j = 0; j < m.columns; ++j) values(i, j) = graph_.evaluate(m(i, j), point);
+  // The entries at a point, column by column.
+  std::vector<double> at(const std::array<double, kVariables>& point, const SymbolicMatrix& m) {
+    std::vector<double> values;
+    for (int j = 0; j < m.columns; ++j) {
+      for (int i = 0; i < m.rows; ++i) values.push_back(graph_.evaluate(m(i, j), point));
     }
     return values;
+  }
+
+  static double norm(const std::vector<double>& x) {
+    return std::sqrt(std::inner_product(x.begin(), x.end(), x.begin(), 0.0));
+  }
+
+  // Of a matrix with this many columns.
+  static std::vector<double> singular_values(std::vector<double> a, int columns) {
+    const int rows = static_cast<int>(a.size()) / columns;
+    std::vector<double> turned(columns * columns);
+    EXPECT_TRUE(orthogonalise_columns(rows, columns, a.data(), turned.data()));
+    std::vector<double> sizes;
+    for (auto column = a.begin(); column != a.end(); column += rows) {
+      sizes.push_back(norm({column, column + rows}));
+    }
+    return sizes;
   }
 
   // As many columns as G leaves free, independent, with G B = 0, wherever the checks hold.
@@ -68,11 +89,21 @@ class FrameTest : public ::testing::Test {
     for (int trial = 0; trial < 20; ++trial) {
       std::array<double, kVariables> point;
       for (double& value : point) value = normal(random);
-      const Eigen::MatrixXd b = at(point, *frame);
-      const Eigen::MatrixXd values = at(point, g);
-      EXPECT_LE((values * b).norm(), kZero * values.norm() * b.norm());
-      const Eigen::VectorXd sizes = Eigen::JacobiSVD<Eigen::MatrixXd>(b).singularValues();
-      EXPECT_GT(sizes.minCoeff(), kIndependent * sizes.maxCoeff());
+      const std::vector<double> b = at(point, *frame);
+      const std::vector<double> values = at(point, g);
+      std::vector<double> products;
+      for (int i = 0; i < g.rows; ++i) {
+        for (int j = 0; j < frame->columns; ++j) {
+          double sum = 0;
+          for (int k = 0; k < g.columns; ++k)
+            sum += values[k * g.rows + i] * b[j * frame->rows + k];
+          products.push_back(sum);
+        }
+      }
+      EXPECT_LE(norm(products), kZero * norm(values) * norm(b));
+      const std::vector<double> sizes = singular_values(b, frame->columns);
+      const auto [least, most] = std::minmax_element(sizes.begin(), sizes.end());
+      EXPECT_GT(*least, kIndependent * *most);
       for (const Check& check : checks) EXPECT_GT(graph_.evaluate(check.value, point), 0);
     }
     // At the origin all these rows vanish.

@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "carnot/numerics/gradient.h"
 #include "carnot/numerics/lu.h"
 #include "carnot/scene/generalized_hamiltonian_scene.h"
 #include "testing/canonical.h"
+#include "testing/distance.h"
 #include "testing/random_points.h"
 
 namespace carnot::test {
@@ -14,10 +17,18 @@ namespace carnot::test {
 // A^-1 B, so that no test needs a decomposition.
 template <int N, int M>
 Matrix<double, N, M> solved(const Matrix<double, N, N>& a, const Matrix<double, N, M>& b) {
-  Eigen::Matrix<double, N, N, Eigen::RowMajor> factor = a;
-  Eigen::Matrix<double, N, M, M == 1 ? Eigen::ColMajor : Eigen::RowMajor> x = b;
+  std::array<double, N * N> factor;  // by rows, as x
+  std::array<double, N * M> x;
+  for (int i = 0; i < N; ++i) {
+    for (int j = 0; j < N; ++j) factor[i * N + j] = a(i, j);
+    for (int j = 0; j < M; ++j) x[i * M + j] = b(i, j);
+  }
   EXPECT_TRUE(lu_solve(N, factor.data(), M, x.data()));
-  return x;
+  Matrix<double, N, M> solution;
+  for (int i = 0; i < N; ++i) {
+    for (int j = 0; j < M; ++j) solution(i, j) = x[i * M + j];
+  }
+  return solution;
 }
 
 // The same scene in other coordinates, z = A w: J becomes A'J A and H(w) = H(A w).
@@ -39,15 +50,15 @@ struct InBasis {
     return scene.hamiltonian(z);
   }
   [[nodiscard]] Matrix<double, kSize, kSize> structure_matrix() const {
-    return basis.transpose() * scene.structure_matrix() * basis;
+    const Matrix<double, kSize, kSize> j = scene.structure_matrix();
+    return transposed_times(basis, product(j, basis));
   }
   [[nodiscard]] Vector<double, kSize> from_original(const Vector<double, kSize>& z) const {
     return solved(basis, z);
   }
   // |A| |A^-1|, Frobenius norms.
   [[nodiscard]] double condition() const {
-    const Matrix<double, kSize, kSize> identity = Matrix<double, kSize, kSize>::Identity();
-    return basis.norm() * solved(basis, identity).norm();
+    return norm(basis) * norm(solved(basis, identity<kSize, double>()));
   }
 };
 
@@ -56,8 +67,9 @@ template <class Scene>
 InBasis<Scene> in_random_basis(const Scene& scene, unsigned seed) {
   constexpr int N = Scene::kSize;
   Generator generator(seed);
-  const Matrix<double, N, N> a = random_matrix<N, N>(generator);
-  return {scene, a + 2 * Matrix<double, N, N>::Identity()};
+  Matrix<double, N, N> a = random_matrix<N, N>(generator);
+  for (int i = 0; i < N; ++i) a(i, i) += 2;
+  return {scene, a};
 }
 
 // A scene with velocity constraints as Prop. 1 has it, M diagonal and regular: z = (q, p, lambda),
@@ -72,7 +84,7 @@ struct AsGeneralized {
 
   template <class T>
   [[nodiscard]] T hamiltonian(const Vector<T, kSize>& z) const {
-    const Vector<T, kDof> q = z.template head<kDof>();
+    const Vector<T, kDof> q = part<0, kDof>(z);
     const Matrix<T, kMultipliers, kDof> g = constrained.constraints(q);
     const Matrix<T, kDof, kDof> mass = constrained.mass(q);
     T sum = constant<T>(0);
@@ -114,22 +126,28 @@ struct NaiveMidpoint {
   double residual = 0;
 
   NaiveMidpoint(const Scene& scene, double h, const Vector<double, N>& z0) : middle(z0) {
-    const Matrix<double, N, N> j = scene.structure_matrix();
-    const Matrix<double, N, N> identity = Matrix<double, N, N>::Identity();
+    Matrix<double, N, N> twice_j = scene.structure_matrix();
+    add_to(twice_j, twice_j);
     constexpr int kIterations = 15;
     for (int i = 0; i < kIterations; ++i) {
-      Vector<double, N> rest = 2 * j * (middle - z0);
-      Matrix<double, N, N> matrix = 2 * j;
+      Vector<double, N> change = middle;
+      subtract_from(change, z0);
+      Vector<double, N> rest = product(twice_j, change);
+      Matrix<double, N, N> matrix = twice_j;
       for (int c = 0; c < N; ++c) {
         const Vector<Jet<double, 1>, N> slope = slope_along(scene, middle, c);
         for (int r = 0; r < N; ++r) matrix(r, c) -= h * slope[r].v[0];
         rest[c] -= h * slope[c].a;
       }
-      residual = rest.norm();
-      middle -= solved(matrix, rest);
-      tangent = 2 * solved(matrix, Matrix<double, N, N>(2 * j)) - identity;
+      residual = norm(rest);
+      subtract_from(middle, solved(matrix, rest));
+      tangent = solved(matrix, twice_j);
+      add_to(tangent, tangent);
+      subtract_from(tangent, identity<N, double>());
     }
-    end = 2 * middle - z0;
+    end = middle;
+    add_to(end, middle);
+    subtract_from(end, z0);
   }
 
  private:
