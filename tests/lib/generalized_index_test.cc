@@ -10,6 +10,7 @@
 #include "carnot/scenes/heisenberg.h"
 #include "carnot/system/generalized_hamiltonian.h"
 #include "carnot/system/velocity_constraints.h"
+#include "testing/distance.h"
 #include "testing/generalized_scenes.h"
 #include "testing/order.h"
 
@@ -88,18 +89,18 @@ struct TwoVariables {
   [[nodiscard]] Matrix<double, 4, 4> structure_matrix() const { return test::canonical(4, 1); }
   // Right for a scale of 1 only.
   [[nodiscard]] Matrix<double, 4, 4> darboux_basis() const {
-    return scale * Matrix<double, 4, 4>::Identity();
+    return diagonal<double>(scale, scale, scale, scale);
   }
 };
 
 TEST(GeneralizedIndexTest, RefusesStructureMatricesWithAReason) {
   OneVariable scene;
   EXPECT_EQ(reason(scene), "accepted");
-  scene.j.setZero();
+  scene.j = filled<3, 3>(0.0);
   EXPECT_THAT(reason(scene), HasSubstr("purely algebraic"));
   scene.j(0, 2) = kNan;
   EXPECT_THAT(reason(scene), HasSubstr("not finite"));
-  scene.j = Matrix<double, 3, 3>::Identity();
+  scene.j = identity<3, double>();
   EXPECT_THAT(reason(scene), HasSubstr("not antisymmetric"));
 }
 
@@ -108,14 +109,14 @@ TEST(GeneralizedIndexTest, RefusesWhatTheSceneSaysOfItselfWrongly) {
   const TwoVariables wrong_basis{TwoVariables::Kind::kProduct, 2};
   EXPECT_THAT(reason(wrong_basis), HasSubstr("does not bring J to Darboux form"));
   // A singular A: A'J A has lost a pair.
-  test::InBasis<test::LambdaH> scene{{}, Matrix<double, 5, 5>::Identity()};
+  test::InBasis<test::LambdaH> scene{{}, identity<5, double>()};
   scene.basis(1, 1) = 0;
   EXPECT_THAT(reason(scene), HasSubstr("has rank 2 where the scene declares 4"));
 }
 
 // lambda h(q), in its own coordinates and in others, where H_yy = 0 to round-off only.
 TEST(GeneralizedIndexTest, RefusesHolonomicConstraintsAsMultipliers) {
-  test::InBasis<test::LambdaH> scene{{}, Matrix<double, 5, 5>::Identity()};
+  test::InBasis<test::LambdaH> scene{{}, identity<5, double>()};
   EXPECT_THAT(reason(scene), HasSubstr("index higher than 1"));
   for (unsigned seed = 1; seed <= 20; ++seed) {
     scene = test::in_random_basis(test::LambdaH{}, seed);
@@ -183,15 +184,15 @@ struct CircleRun {
 CircleRun midpoint_on_the_circle(int steps) {
   const test::LambdaH scene;
   CircleRun run;
-  Vector<double, 5> z;
-  z << 1, 0, 0, 1, 1;
+  Vector<double, 5> z{{1, 0, 0, 1, 1}};
   for (int i = 0; i < steps; ++i) {
     const test::NaiveMidpoint<test::LambdaH> step(scene, 1.0 / steps, z);
     EXPECT_LE(step.residual, 1e3 * kEps);
-    EXPECT_NEAR(step.middle.head<2>().norm(), 1, 1e3 * kEps) << "h = 0 at the midpoint";
+    EXPECT_NEAR(std::hypot(step.middle[0], step.middle[1]), 1, 1e3 * kEps)
+        << "h = 0 at the midpoint";
     if (i == 0) run.first_lambda = step.middle[4];
     run.largest_lambda = std::max(run.largest_lambda, std::abs(step.middle[4]));
-    z.head<4>() = step.end.head<4>();
+    store(part<0, 4>(step.end), z.data());
     z[4] = step.middle[4];
   }
   const double cosine = std::cos(1);
@@ -224,10 +225,9 @@ TEST(GeneralizedIndexTest, MidpointRuleDoesNotConvergeAtHigherIndex) {
 TEST(GeneralizedIndexTest, MidpointRuleAtHigherIndexTakesEveryStart) {
   constexpr double kStep = 0.01;
   for (const double radius : {0.9, 1.1, 2.0}) {
-    Vector<double, 5> z;
-    z << radius, 0, 0, 1, 1;
+    const Vector<double, 5> z{{radius, 0, 0, 1, 1}};
     const test::NaiveMidpoint<test::LambdaH> step(test::LambdaH{}, kStep, z);
-    EXPECT_NEAR(step.middle.head<2>().norm(), 1, 1e3 * kEps);
+    EXPECT_NEAR(std::hypot(step.middle[0], step.middle[1]), 1, 1e3 * kEps);
     EXPECT_NEAR(step.middle[4] * kStep * kStep / (4 * (radius - 1)), 1, 0.01);
   }
 }
@@ -240,19 +240,19 @@ TEST(GeneralizedIndexTest, MomentumOfAConstrainedVelocity) {
   for (int sample = 0; sample < 20; ++sample) {
     const auto q = test::random_vector<3>(generator);
     const auto lambda = test::random_vector<1>(generator);
-    Vector<double, 3> v = reference.scene().frame(q) * test::random_vector<2>(generator);
+    Vector<double, 3> v = product(reference.scene().frame(q), test::random_vector<2>(generator));
     const Vector<double, 3> wanted = v;
     Vector<double, 3> p;
     EXPECT_LE(system.admissible_momentum(0, q, v, lambda, p), 100 * kEps);
-    EXPECT_LE((v - wanted).norm(), 100 * kEps);
-    EXPECT_LE((p - reference.momentum(q, v, lambda)).norm(), 100 * kEps);
+    EXPECT_LE(test::distance(v, wanted), 100 * kEps);
+    EXPECT_LE(test::distance(p, reference.momentum(q, v, lambda)), 100 * kEps);
 
     const auto forbidden = test::random_vector<3>(generator);
     v = forbidden;
     const double violated = system.admissible_momentum(0, q, v, lambda, p);
-    const double expected = reference.constraint(q, forbidden).norm() / forbidden.norm();
+    const double expected = test::norm(reference.constraint(q, forbidden)) / test::norm(forbidden);
     EXPECT_NEAR(violated, expected, 100 * kEps);
-    EXPECT_LE(reference.constraint(q, v).norm(), 100 * kEps) << "v has become admissible";
+    EXPECT_LE(test::norm(reference.constraint(q, v)), 100 * kEps) << "v has become admissible";
   }
 }
 
