@@ -55,7 +55,7 @@ TEST(RattleTest, ForgetsMomentaAcrossTheManifold) {
   pushed.value.tail<3>() += 0.3 * start.value.head<3>();
   ASSERT_TRUE(PendulumRuns::run(2, 0.1, 1, z).completed());
   ASSERT_TRUE(PendulumRuns::run(2, 0.1, 1, pushed).completed());
-  EXPECT_LE(test::distance(pushed.value, z.value), kTolerance);
+  EXPECT_LE(test::relative_distance(pushed.value, z.value), kTolerance);
 }
 
 // A start near the manifold is on it after one step.
@@ -98,9 +98,10 @@ TEST(RattleTest, StagesAndNodesOfAStep) {
                   RodSkateRuns::Method::Impulse(-method.impulse_after(i)),
                   after);
     const Vector<double, 8> midpoint = 0.5 * (before + after);
-    EXPECT_LE(test::distance(midpoint, Vector<double, 8>(method.stages().col(i))), kTolerance);
-    EXPECT_LE(test::distance(Vector<double, 8>(after - before),
-                             Vector<double, 8>(method.increments().col(i))),
+    EXPECT_LE(test::relative_distance(midpoint, Vector<double, 8>(method.stages().col(i))),
+              kTolerance);
+    EXPECT_LE(test::relative_distance(Vector<double, 8>(after - before),
+                                      Vector<double, 8>(method.increments().col(i))),
               kTolerance);
     const Vector<double, 4> v = method.increments().col(i).head<4>() / (kStep * tableau.b[i]);
     EXPECT_NEAR(system.constraint(Vector<double, 4>(midpoint.head<4>()), v)[0], 0, kTolerance);
@@ -153,15 +154,17 @@ TEST(RodSkateReferenceTest, AllTimes) {
     }
     const Vector<double, 4> q = z.value.head<4>();
     const Vector<double, 4> p = z.value.tail<4>();
-    EXPECT_LE(test::distance(q, test::numbers<4>(value.at("q"))), kTolerance) << "T = " << time;
-    EXPECT_LE(test::distance(p, test::numbers<4>(value.at("p"))), kTolerance) << "T = " << time;
+    EXPECT_LE(test::relative_distance(q, test::numbers<4>(value.at("q"))), kTolerance)
+        << "T = " << time;
+    EXPECT_LE(test::relative_distance(p, test::numbers<4>(value.at("p"))), kTolerance)
+        << "T = " << time;
     Vector<double, 3> u;
     Rate<double, 4> rate;
     Vector<double, 1> lambda;
     ASSERT_EQ(system.rate(time, q, p, u, rate), RateStatus::kOk);
     ASSERT_EQ(system.multipliers(time, q, p, u, lambda), RateStatus::kOk);
     const auto velocity = test::numbers<4>(value.at("qdot"));
-    EXPECT_LE(test::distance(rate.q_dot, velocity), 10 * kTolerance) << "T = " << time;
+    EXPECT_LE(test::relative_distance(rate.q_dot, velocity), 10 * kTolerance) << "T = " << time;
     EXPECT_NEAR(lambda[0], test::number(value.at("lambda")), 10 * kTolerance) << "T = " << time;
     EXPECT_NEAR(system.hamiltonian(time, q, p, u), test::number(value.at("H")), 10 * kTolerance);
     ++compared;

@@ -31,6 +31,13 @@ auto largest_change(const A& a, const B& b) {
   return largest;
 }
 
+// max-norm of the difference over max(1, size).
+template <class V>
+auto relative_distance(const V& a, const V& b) {
+  using T = typename V::Scalar;
+  return largest_change(a, b) / maximum<T>(T(1), largest_entry(b));
+}
+
 // The root of the sum of squares of all entries, and that of the difference.
 template <class T, int rows, int cols>
 T norm(const Matrix<T, rows, cols>& a) {

@@ -184,9 +184,9 @@ State<double, FullScene<Pair>::kDof> lift(const Vector<double, ReducedScene<Pair
   Matrix<double, n, m> e;
   for (int i = 0; i < n; ++i) {
     q[i] = x[i].a;
-    e.row(i) = x[i].v.transpose();
+    for (int j = 0; j < m; ++j) e(i, j) = x[i].v[j];
   }
-  const Matrix<double, m, m> gram = product(e.transpose(), e);
+  const Matrix<double, m, m> gram = transposed_times(e, e);
   Vector<double, n> p = product(e, Cholesky<double, m>(gram).solve(p_r));
   const VelocityConstraints<FullScene<Pair>> system(Pair::kFull);
   EXPECT_EQ(project_momentum(system, 0.0, q, p), RateStatus::kOk);
