@@ -22,8 +22,8 @@ using StageRows =
 
 // Row k of `increments` <- A row k: the first guess from the last step.
 template <int size, int s>
-[[gnu::flatten, gnu::noinline]] void packed_extrapolation(const double* columns,
-                                                          double* increments) {
+CARNOT_FLATTEN [[gnu::noinline]] void packed_extrapolation(const double* columns,
+                                                           double* increments) {
   for (int k = 0; k < size; ++k) {
     combination<s>(columns, increments + k * s, Pack<s>(0)).store(increments + k * s);
   }
@@ -31,9 +31,9 @@ template <int size, int s>
 
 // The largest entry of each of the s combinations A row k, over the rows k.
 template <int size, int s>
-[[gnu::flatten, gnu::noinline]] void packed_sizes(const double* columns,
-                                                  const double* rows,
-                                                  double* largest) {
+CARNOT_FLATTEN [[gnu::noinline]] void packed_sizes(const double* columns,
+                                                   const double* rows,
+                                                   double* largest) {
   Pack<s> most(0);
   for (int k = 0; k < size; ++k) {
     most = max(most, abs(combination<s>(columns, rows + k * s, Pack<s>(0))));
@@ -43,13 +43,13 @@ template <int size, int s>
 
 // The sum of each row.
 template <int size, int s>
-[[gnu::flatten, gnu::noinline]] void packed_sums(const double* rows, double* sums) {
+CARNOT_FLATTEN [[gnu::noinline]] void packed_sums(const double* rows, double* sums) {
   for (int k = 0; k < size; ++k) sums[k] = sum(Pack<s>::load(rows + k * s));
 }
 
 // The largest sum of the absolute values in a row.
 template <int size, int s>
-[[gnu::flatten, gnu::noinline]] double packed_distance(const double* rows) {
+CARNOT_FLATTEN [[gnu::noinline]] double packed_distance(const double* rows) {
   double most = 0;
   for (int k = 0; k < size; ++k) most = std::max(most, sum(abs(Pack<s>::load(rows + k * s))));
   return most;
@@ -59,12 +59,12 @@ template <int size, int s>
 // size r + c of `jacobian`, column c of dz is `dz + size c`, entry r of its dL row size c + r of
 // `increments`. Returns the largest change, that of column c times weights[c].
 template <int size, int s>
-[[gnu::flatten, gnu::noinline]] double packed_tangent_sweep(const double* mu,
-                                                            const double* jacobian,
-                                                            const double* dz,
-                                                            const double* compensation,
-                                                            const double* weights,
-                                                            double* increments) {
+CARNOT_FLATTEN [[gnu::noinline]] double packed_tangent_sweep(const double* mu,
+                                                             const double* jacobian,
+                                                             const double* dz,
+                                                             const double* compensation,
+                                                             const double* weights,
+                                                             double* increments) {
   using P = Pack<s>;
   P largest_of_all(0);
   for (int c = 0; c < size; ++c) {

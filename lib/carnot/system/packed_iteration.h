@@ -61,9 +61,9 @@ double scale_of_stages(const StageData& data) {
 // where a rate fails. Never inlined into the loop of the iteration: the compiler would move all
 // constants of the rate out of it, of which there are more than registers, and take a third longer.
 template <int s, class System>
-[[gnu::flatten, gnu::noinline]] double sweep_in_register(const System& system,
-                                                         const StageData& data,
-                                                         double* change) {
+CARNOT_FLATTEN [[gnu::noinline]] double sweep_in_register(const System& system,
+                                                          const StageData& data,
+                                                          double* change) {
   constexpr int n = System::kDof;
   using P = Pack<s>;
   Vector<P, n> q;

@@ -17,7 +17,7 @@ concept PacksRates = System::kPacks;
 // The part of packed_rate() that fills one register: S lanes of rows of W numbers. Everything it
 // calls is inlined, or registers would go through memory.
 template <int S, int W, class Lane, class System>
-[[gnu::flatten, gnu::noinline]] bool rate_in_register(
+CARNOT_FLATTEN [[gnu::noinline]] bool rate_in_register(
     const System& system, const double* t, const double* z, double* y, double* z_dot) {
   constexpr int n = System::kDof;
   using P = Pack<S, Lane>;
@@ -65,7 +65,7 @@ inline constexpr int kPackedDirections = n <= 7   ? std::min(3, 2 * n)
 
 // The part of packed_slopes() that fills one register: S lanes of rows of W numbers.
 template <int S, int W, class System>
-[[gnu::flatten, gnu::noinline]] bool slopes_in_register(
+CARNOT_FLATTEN [[gnu::noinline]] bool slopes_in_register(
     const System& system,
     const double* t,
     const double* z,
