@@ -95,8 +95,9 @@ class FrameTest : public ::testing::Test {
       for (int i = 0; i < g.rows; ++i) {
         for (int j = 0; j < frame->columns; ++j) {
           double sum = 0;
-          for (int k = 0; k < g.columns; ++k)
+          for (int k = 0; k < g.columns; ++k) {
             sum += values[k * g.rows + i] * b[j * frame->rows + k];
+          }
           products.push_back(sum);
         }
       }
