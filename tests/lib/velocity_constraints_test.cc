@@ -104,9 +104,9 @@ TYPED_TEST(VelocityConstraintsTest, HandDerivativesAgreeWithJets) {
 TYPED_TEST(VelocityConstraintsTest, AlgebraicVariablesHoldVelocityAndMultipliers) {
   this->at_all_points([&](const auto& q, const auto& p) {
     const Solved b(this->plain_, q, p);
-    constexpr int n = TypeParam::kDof;
-    EXPECT_EQ(largest_change(b.rate.q_dot, part<0, n>(b.y)), 0);
-    EXPECT_LE(largest_change(b.lambda, part<n, TypeParam::kMultipliers>(b.y)), kRoundOff);
+    constexpr int kDof = TypeParam::kDof;
+    EXPECT_EQ(largest_change(b.rate.q_dot, part<0, kDof>(b.y)), 0);
+    EXPECT_LE(largest_change(b.lambda, part<kDof, TypeParam::kMultipliers>(b.y)), kRoundOff);
   });
 }
 
@@ -135,11 +135,11 @@ TYPED_TEST_SUITE(RegularMassTest, test::RegularMassScenes, test::SceneNames);
 
 // System (8) of the paper: (G M^-1 G') lambda = -G M^-1 p, where M^-1 exists.
 TYPED_TEST(RegularMassTest, MultipliersSolveThePapersSystem) {
-  constexpr int n = TypeParam::kDof;
-  const Matrix<double, n, n> mass = this->framed_.scene().mass(filled<n>(0.0));
-  Matrix<double, n, n> inverse = filled<n, n>(0.0);
-  for (int i = 0; i < n; ++i) inverse(i, i) = 1 / mass(i, i);
-  ASSERT_LE(largest_change(product(mass, inverse), identity<n, double>()), kRoundOff)
+  constexpr int kDof = TypeParam::kDof;
+  const Matrix<double, kDof, kDof> mass = this->framed_.scene().mass(filled<kDof>(0.0));
+  Matrix<double, kDof, kDof> inverse = filled<kDof, kDof>(0.0);
+  for (int i = 0; i < kDof; ++i) inverse(i, i) = 1 / mass(i, i);
+  ASSERT_LE(largest_change(product(mass, inverse), identity<kDof, double>()), kRoundOff)
       << "all scenes have a diagonal M";
   this->at_all_points([&](const auto& q, const auto& p) {
     const Solved a(this->framed_, q, p);
