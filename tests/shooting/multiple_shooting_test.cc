@@ -17,7 +17,7 @@ const std::vector<double> kRoughP0{2.12, -0.274, 1.167, 1.378};
 TEST(ShootingEquations, JacobianIsThatOfTheResidual) {
   const BoundaryValueProblem problem = test::vehicle({0, 0, 0, 0}, {2, 1, 0.5, 0.5});
   const Knots knots = knots_of(problem, kRoughP0, 2, 16);
-  const ShootingEquations equations(problem, knots, 16);
+  const ShootingEquations equations(problem, knots, {.steps = 16});
   constexpr int kSize = 8;
   constexpr double kStep = 1e-5;  // central differences: error kStep^2 times third derivatives
   constexpr double kTolerance = 1e-7;
@@ -49,8 +49,8 @@ TEST(ShootingEquations, MomentaHaveScalesOfTheirOwn) {
   for (int i = 0; i <= 2; ++i) {
     for (int j = 0; j < 4; ++j) knots.at(i)[4 + j] = largest[j] / (1 << i);
   }
-  const ShootingEquations common(problem, knots, 16);
-  const ShootingEquations equations(problem, knots, 16, true);
+  const ShootingEquations common(problem, knots, {.steps = 16});
+  const ShootingEquations equations(problem, knots, {.steps = 16, .own_scales = true});
   const std::vector<double> scales{5, 0.25, 1, 0.05};
   for (int j = 0; j < 4; ++j) {
     EXPECT_EQ(equations.scale(4 + j), scales[j]);

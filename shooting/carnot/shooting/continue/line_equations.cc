@@ -36,7 +36,7 @@ LineEquations::LineEquations(const ProblemLine& line, const Knots& knots, double
       weights_(size_),
       rows_(size_) {
   const BoundaryValueProblem problem = line.at(s);
-  const ShootingEquations equations(problem, knots, steps);
+  const ShootingEquations equations(problem, knots, {.steps = steps});
   const double share = std::sqrt(static_cast<double>(knots.segments));
   for (int c = 0; c < 2 * knots.dof; ++c) scale_.push_back(equations.scale(c));
   for (int c = 0; c < size_; ++c) {
@@ -67,7 +67,7 @@ Knots LineEquations::open_knots(const Eigen::VectorXd& x, const std::vector<doub
 Knots LineEquations::knots(const Eigen::VectorXd& x) const {
   const BoundaryValueProblem problem = line_.at(std::clamp(x[size_], 0.0, 1.0));
   Knots knots = open_knots(x, problem.from);
-  (void)ShootingEquations(problem, knots, steps_).complete(knots);
+  (void)ShootingEquations(problem, knots, {.steps = steps_}).complete(knots);
   return knots;
 }
 
@@ -100,7 +100,7 @@ bool LineEquations::in_scale(const Eigen::VectorXd& x) const {
 bool LineEquations::values(const Eigen::VectorXd& x, double s, Eigen::VectorXd& f) const {
   const BoundaryValueProblem problem = line_.at(s);
   const Knots knots = open_knots(x, problem.from);
-  const ShootingEquations equations(problem, reference_, steps_);
+  const ShootingEquations equations(problem, reference_, {.steps = steps_});
   f.resize(size_);
   for (int i = 0; i < knots.segments; ++i) {
     const int row = 2 * knots.dof * i;
@@ -146,7 +146,7 @@ bool LineEquations::evaluate(const Eigen::VectorXd& x,
   const int n = reference_.dof;
   const BoundaryValueProblem problem = line_.at(s);
   const Knots knots = open_knots(x, problem.from);
-  const ShootingEquations equations(problem, reference_, steps_);
+  const ShootingEquations equations(problem, reference_, {.steps = steps_});
   std::vector<double> block(static_cast<std::size_t>(4) * n * n);
   residual.resize(size_);
   jacobian.setZero(size_, size_ + 1);

@@ -161,8 +161,7 @@ Shooting shoot_with_ceres(const BoundaryValueProblem& problem,
                           const ShootingOptions& options,
                           Knots& knots) {
   const int n = knots.dof;
-  const ShootingEquations equations(
-      problem, knots, options.steps, options.own_scales, options.stop);
+  const ShootingEquations equations(problem, knots, options);
   std::vector<Beginning> beginnings = begin(equations, knots);
   Shooting result;
   if (beginnings.empty()) return result;

@@ -28,7 +28,7 @@ struct ShootingOptions {
   bool near = true;
   bool own_scales = false;   // whether each momentum has a scale of its own (shooting_equations.h)
   double max_growth = 1e12;  // newton and ceres stop where a scaled tangent flow is larger
-  Stop stop;                 // ends it where it is, not converged
+  Stop stop{};               // ends it where it is, not converged
 };
 
 struct Shooting {

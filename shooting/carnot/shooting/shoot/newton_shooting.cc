@@ -74,8 +74,7 @@ Shooting shoot_with_newton(const BoundaryValueProblem& problem,
                            const ShootingOptions& options,
                            Knots& knots) {
   constexpr double kShortestStep = 1.0 / 32;
-  const ShootingEquations equations(
-      problem, knots, options.steps, options.own_scales, options.stop);
+  const ShootingEquations equations(problem, knots, options);
   Banded system(equations, knots);
   std::vector<double> residual;
   Shooting result;

@@ -115,8 +115,7 @@ constexpr std::array kChoices{Choice{"nlopt:lbfgs", nlopt::LD_LBFGS, false},
 
 // Minimises the squared jumps over all unknowns.
 int descend(const BoundaryValueProblem& problem, const ShootingOptions& options, Knots& knots) {
-  const ShootingEquations equations(
-      problem, knots, options.steps, options.own_scales, options.stop);
+  const ShootingEquations equations(problem, knots, options);
   Stacked stacked(equations, knots);
   nlopt::opt solver(nlopt::LD_LBFGS, stacked.unknowns());
   solver.set_min_objective(half_square, &stacked);
@@ -136,8 +135,7 @@ int search_box(const BoundaryValueProblem& problem,
   constexpr double kHalfWidth = 0.5;  // of the box, relative to the largest momentum
   constexpr unsigned long kSeed = 1;  // of NLopt's generator, one for each thread
   Knots single = knots_of(problem, start_unknowns(problem, knots.at(0)), 1, options.steps);
-  const ShootingEquations equations(
-      problem, single, options.steps, options.own_scales, options.stop);
+  const ShootingEquations equations(problem, single, options);
   Stacked stacked(equations, single);
   std::vector<double> x = stacked.pack(single);
   std::vector<double> lower = x;
@@ -171,8 +169,7 @@ Shooting shoot_with_nlopt(const BoundaryValueProblem& problem,
     result.iterations = choice.in_a_box ? search_box(problem, options, choice.algorithm, knots)
                                         : descend(problem, options, knots);
   }
-  const ShootingEquations equations(
-      problem, knots, options.steps, options.own_scales, options.stop);
+  const ShootingEquations equations(problem, knots, options);
   Stacked stacked(equations, knots);
   nlopt::opt solver(nlopt::LD_SLSQP, stacked.unknowns());
   std::vector<double> x = stacked.pack(knots);

@@ -3,19 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
-#include <utility>
 
 #include "carnot/shooting/linear/round_off.h"
 
 namespace carnot::internal {
 
-ShootingEquations::ShootingEquations(
-    const BoundaryValueProblem& problem, const Knots& knots, long steps, bool own_scales, Stop stop)
+ShootingEquations::ShootingEquations(const BoundaryValueProblem& problem,
+                                     const Knots& knots,
+                                     const ShootingOptions& options)
     : problem_(problem),
       segments_(knots.segments),
       dof_(knots.dof),
-      steps_(steps),
-      stop_(std::move(stop)) {
+      steps_(options.steps),
+      stop_(options.stop) {
   constexpr double kLeast = 0.01;  // of the largest momentum
   double q_scale = distance_between_ends(problem);
   std::vector<double> own(dof_, 0.0);
@@ -30,7 +30,9 @@ ShootingEquations::ShootingEquations(
   if (q_scale < kRestRoundOff) q_scale = 1;
   if (p_scale < kRestRoundOff) p_scale = 1;
   scale_.assign(dof_, q_scale);
-  for (const double p : own) scale_.push_back(own_scales ? std::max(p, kLeast * p_scale) : p_scale);
+  for (const double p : own) {
+    scale_.push_back(options.own_scales ? std::max(p, kLeast * p_scale) : p_scale);
+  }
 }
 
 bool ShootingEquations::evaluate(

@@ -12,17 +12,17 @@
 #include "carnot/shooting/problem/ends.h"
 #include "carnot/shooting/problem/stop.h"
 #include "carnot/shooting/shoot/knots.h"
+#include "carnot/shooting/shoot/multiple_shooting.h"
 
 namespace carnot::internal {
 
 class ShootingEquations {
  public:
-  // `steps` of the method over the whole time. Keeps a reference to `problem`.
+  // Of the options it takes the steps, the scales and what stops it. Keeps a reference to
+  // `problem`.
   ShootingEquations(const BoundaryValueProblem& problem,
                     const Knots& knots,
-                    long steps,
-                    bool own_scales = false,
-                    Stop stop = {});
+                    const ShootingOptions& options);
 
   [[nodiscard]] int segments() const { return segments_; }
   [[nodiscard]] int dof() const { return dof_; }
