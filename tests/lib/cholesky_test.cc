@@ -43,7 +43,7 @@ template <int n>
 Matrix<double, n, n> random_symmetric(Generator& generator) {
   const Matrix<double, n, n> half = test::random_matrix<n, n>(generator);
   Matrix<double, n, n> sum = half;
-  add_to(sum, transposed_times(half, identity<n, double>()));
+  add_to(sum, test::transposed(half));
   return sum;
 }
 

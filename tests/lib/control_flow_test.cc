@@ -16,6 +16,7 @@
 #include "carnot/system/velocity_constraints.h"
 #include "testing/control_forms.h"
 #include "testing/control_scene_list.h"
+#include "testing/distance.h"
 #include "testing/order.h"
 #include "testing/random_points.h"
 
@@ -40,11 +41,6 @@ Vector<double, 2 * System::kDof> end_point(const System& system,
   return z.value;
 }
 
-template <class A, class B>
-double distance(const A& a, const B& b) {
-  return (a - b).cwiseAbs().maxCoeff();
-}
-
 // The same p0: the multipliers are in it, for H(q, p) is the same function.
 template <class Controls, class Scene>
 void expect_extremals_of(const Scene& constrained, const OptimalControl<Controls>& controlled) {
@@ -57,7 +53,8 @@ void expect_extremals_of(const Scene& constrained, const OptimalControl<Controls
     const auto q = test::random_vector<Scene::kDof>(generator);
     const auto p = test::random_vector<Scene::kDof>(generator, 1.5);
     const auto expected = end_point(system, q, p, kDuration, kSteps);
-    EXPECT_LE(distance(end_point(controlled, q, p, kDuration, kSteps), expected), kRoundOff);
+    EXPECT_LE(test::largest_change(end_point(controlled, q, p, kDuration, kSteps), expected),
+              kRoundOff);
   }
 }
 TEST(ControlFlowTest, HeisenbergWithControls) {
@@ -86,10 +83,10 @@ void expect_closed_form(const Scene& scene, const Exact& exact) {
     Vector<double, n> p = test::random_vector<n>(generator, 1.5);
     if (i < 3) p[n - 1] = std::array{0.0, 1e-9, -1e-4}[i];
     const Vector<double, 2 * n> end = end_point(system, q, p, kDuration, 100);
-    EXPECT_LE(distance(end, exact(q, p, kDuration)), kRoundOff) << p.transpose();
+    EXPECT_LE(test::largest_change(end, exact(q, p, kDuration)), kRoundOff) << p.transpose();
     Vector<double, 2 * n> start;
     start << q, p;
-    EXPECT_LE(distance(exact(q, p, 0.0), start), 4 * kEps);
+    EXPECT_LE(test::largest_change(exact(q, p, 0.0), start), 4 * kEps);
   }
 }
 TEST(ControlFlowTest, GrushinClosedForm) {
@@ -110,7 +107,7 @@ TEST(ControlFlowTest, LinearQuadraticRegulatorClosedForm) {
 TEST(ControlFlowTest, LeastEffortIsACubic) {
   const OptimalControl<scenes::DoubleIntegrator> system{{0, 0}};
   const Vector<double, 4> end = end_point(system, {0, 0}, {12, 6}, 1, 4);
-  EXPECT_LE(distance(end, Vector<double, 4>(1, 0, 12, -6)), 64 * kEps);
+  EXPECT_LE(test::largest_change(end, Vector<double, 4>(1, 0, 12, -6)), 64 * kEps);
 }
 
 // H_t of a scene that depends on time: f = a(t) u, a = 1 + cos(t)/2, l = u^2/2, so that p is
@@ -180,7 +177,8 @@ TYPED_TEST(DriftTest, OrderBySlope) {
   std::vector<double> error;
   for (const long steps : {4L, 6L, 8L, 12L, 16L, 24L}) {
     step.push_back(2.0 / static_cast<double>(steps));
-    error.push_back(distance(end_point(this->system_, this->q_, this->p_, 2, steps), exact));
+    error.push_back(
+        test::largest_change(end_point(this->system_, this->q_, this->p_, 2, steps), exact));
   }
   const LineFit fit = test::fit_order(step, error, 1e-13, 1e-2);
   EXPECT_GE(fit.points, 3);

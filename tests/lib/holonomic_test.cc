@@ -142,7 +142,7 @@ TEST(HolonomicTest, ManifoldProjector) {
   Matrix<double, 6, 6> projector;
   ASSERT_TRUE(manifold_projector(system, 0.0, point(0.4), projector));
   EXPECT_LE(distance(product(projector, projector), projector), kTolerance);
-  EXPECT_LE(distance(transposed_times(projector, identity<6, double>()), projector), kTolerance);
+  EXPECT_LE(distance(test::transposed(projector), projector), kTolerance);
   double trace = 0;
   for (int i = 0; i < 6; ++i) trace += projector(i, i);
   EXPECT_NEAR(trace, 4, kTolerance);

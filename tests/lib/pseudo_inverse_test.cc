@@ -13,6 +13,7 @@ namespace {
 
 using test::distance;
 using test::norm;
+using test::transposed;
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 // Entries up to 1; smallest singular value kept above 1e-2 by dropping worse samples.
@@ -41,11 +42,6 @@ struct Inverse {
     rank = inverse.rank();
   }
 };
-
-template <int rows, int cols>
-Matrix<double, cols, rows> transposed(const Matrix<double, rows, cols>& a) {
-  return transposed_times(a, identity<rows, double>());
-}
 
 // The four identities of Penrose determine the pseudo-inverse. False for a sample left out.
 template <int rows, int cols>

@@ -169,8 +169,8 @@ TEST(PlateBallTest, RollsWithoutSlipOrSpin) {
     const auto x = path(q, v);
     const auto r = test::attitude(x[2], x[3], x[4]);
     const Vector<double, 3> w = test::axis_of(times_transposed(slopes(r), values(r)));
-    // The lowest point of the ball, at -e_z from its centre, moves with the velocity c + w x
-    // (-e_z).
+    // The lowest point of the ball, at -e_z from its centre, moves with c + w x (-e_z): in the
+    // plane that is
     const Vector<double, 2> contact(v[0] - w[1], v[1] + w[0]);
     const Vector<double, 3> g = product(scene.constraints(q), v);
     EXPECT_NEAR(g[0], contact[1], kRoundOff);

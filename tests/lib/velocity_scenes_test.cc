@@ -16,13 +16,13 @@
 namespace carnot::velocity_scenes_test {
 namespace {
 
+using test::largest_change;
+
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 // Points in [-2, 2]^n where 1 / chart^2 is below 7, momenta up to 2: products up to 1000, and two
 // solves.
 constexpr double kRoundOff = 4000 * kEps;
 constexpr int kSamples = 60;
-
-using test::largest_change;
 
 // What a system says at one phase point. Never inlined, so that it compiles once for all laws.
 template <class System>
@@ -110,7 +110,7 @@ TYPED_TEST(VelocityScenesTest, MassIsSymmetricAndPositiveOnTheKernel) {
   for (const auto& [q, p] : this->points_) {
     const auto mass = this->scene_.mass(q);
     const auto b = this->scene_.frame(q);
-    EXPECT_LE(largest_change(mass, Transposed<std::decay_t<decltype(mass)>>{mass}), 16 * kEps);
+    EXPECT_LE(largest_change(mass, test::transposed(mass)), 16 * kEps);
     typename TestFixture::Reduced reduced = transposed_times(b, product(mass, b));
     EXPECT_TRUE((Cholesky<double, TestFixture::kFrame>(reduced).positive()));
     if constexpr (HasFrameMass<TypeParam>) {
@@ -217,10 +217,10 @@ TYPED_TEST(VelocityScenesTest, MirrorsAreAllThatThereAre) {
 }
 
 TYPED_TEST(VelocityScenesTest, TimeReversal) {
-  EXPECT_LE(this->change_of_hamiltonian([](auto&, auto& p) {
+  const auto reverse = [](auto&, auto& p) {
     for (int i = 0; i < TypeParam::kDof; ++i) p[i] = -p[i];
-  }),
-            kRoundOff);
+  };
+  EXPECT_LE(this->change_of_hamiltonian(reverse), kRoundOff);
 }
 
 TYPED_TEST(VelocityScenesTest, AnglesHaveTheirPeriod) {

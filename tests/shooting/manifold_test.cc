@@ -4,18 +4,13 @@
 
 #include <cmath>
 
+#include "carnot/shooting/linear/norm.h"
 #include "shooting/problems.h"
 
 namespace carnot::internal::manifold_test {
 namespace {
 
 constexpr double kRounded = 1e-13;
-
-double norm(const std::vector<double>& x) {
-  double sum = 0;
-  for (const double value : x) sum += value * value;
-  return std::sqrt(sum);
-}
 
 TEST(Manifold, WithoutConstraintsNothingMoves) {
   const BoundaryValueProblem problem = test::unicycle({0, 0, 0}, {1, 1, 0});

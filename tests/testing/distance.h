@@ -38,6 +38,16 @@ auto relative_distance(const V& a, const V& b) {
   return largest_change(a, b) / maximum<T>(T(1), largest_entry(b));
 }
 
+// a', as a matrix of its own.
+template <class T, int rows, int cols>
+Matrix<T, cols, rows> transposed(const Matrix<T, rows, cols>& a) {
+  Matrix<T, cols, rows> b;
+  for (int j = 0; j < cols; ++j) {
+    for (int i = 0; i < rows; ++i) b(j, i) = a(i, j);
+  }
+  return b;
+}
+
 // The root of the sum of squares of all entries, and that of the difference.
 template <class T, int rows, int cols>
 T norm(const Matrix<T, rows, cols>& a) {

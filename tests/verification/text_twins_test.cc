@@ -22,9 +22,12 @@
 #include "carnot/system/system_functions.h"
 #include "carnot/transcription/transcription_functions.h"
 #include "catalogue/scene_choice.h"
+#include "testing/distance.h"
 
 namespace carnot::text_twins_test {
 namespace {
+
+using test::largest_change;
 
 using apps::SceneEntry;
 
@@ -72,14 +75,8 @@ std::string test_name(const ::testing::TestParamInfo<std::string>& scene) {
 
 double largest(const std::vector<double>& x) {
   double most = 0;
-  for (const double e : x) most = std::max(most, std::abs(e));
+  for (const double e : x) most = maximum(most, std::abs(e));
   return most;
-}
-
-double distance(const std::vector<double>& a, const std::vector<double>& b) {
-  std::vector<double> d(a.size());
-  for (std::size_t i = 0; i < a.size(); ++i) d[i] = a[i] - b[i];
-  return largest(d);
 }
 
 class TextDescriptions : public ::testing::TestWithParam<std::string> {
@@ -204,13 +201,14 @@ TEST_P(TextTwins, AgreesAtRandomPoints) {
     ASSERT_EQ(text.status, twin.status);
     if (twin.status != RateStatus::kOk) continue;
     // Near a singular point Newton's method may end on either of two solutions.
-    if (text_.has_branches() && distance(text.rate, twin.rate) > 1e-3) {
+    if (text_.has_branches() && largest_change(text.rate, twin.rate) > 1e-3) {
       ++other_branch;
       continue;
     }
-    EXPECT_LE(distance(text.rate, twin.rate), kRoundOff * (1 + largest(twin.rate)));
-    EXPECT_LE(distance(text.jacobian, twin.jacobian), kRoundOff * (1 + largest(twin.jacobian)));
-    EXPECT_LE(distance(text.lambda, twin.lambda), kRoundOff * (1 + largest(twin.lambda)));
+    EXPECT_LE(largest_change(text.rate, twin.rate), kRoundOff * (1 + largest(twin.rate)));
+    EXPECT_LE(largest_change(text.jacobian, twin.jacobian),
+              kRoundOff * (1 + largest(twin.jacobian)));
+    EXPECT_LE(largest_change(text.lambda, twin.lambda), kRoundOff * (1 + largest(twin.lambda)));
     EXPECT_NEAR(text.hamiltonian, twin.hamiltonian, kRoundOff * (1 + std::abs(twin.hamiltonian)));
   }
   EXPECT_LE(other_branch, 1);
@@ -233,8 +231,8 @@ TEST_P(TextTwins, TurnsVelocitiesIntoTheSameMomenta) {
     // Iterations end at round-off of their equations, times their condition.
     constexpr double kIterated = 100 * kRoundOff;
     EXPECT_NEAR(violated, twin, kIterated * (1 + twin));
-    EXPECT_LE(distance(v, w), kIterated * (1 + largest(w)));
-    EXPECT_LE(distance(p, expected), kIterated * (1 + largest(expected)));
+    EXPECT_LE(largest_change(v, w), kIterated * (1 + largest(w)));
+    EXPECT_LE(largest_change(p, expected), kIterated * (1 + largest(expected)));
   }
 }
 
@@ -268,14 +266,14 @@ void expect_side_by_side(const TranscriptionFunctions& f,
     for (int i = 0; i < entry_count(f); ++i) {
       known.insert(known.end(), &rows[i * row_length(n)], &rows[i * row_length(n)] + 1 + n);
     }
-    EXPECT_LE(distance(lane(slopes, l), known), kTolerance * (1 + largest(known)));
+    EXPECT_LE(largest_change(lane(slopes, l), known), kTolerance * (1 + largest(known)));
     std::vector<double> entries(static_cast<std::size_t>(entry_count(f)));
     f.entries(system, lane(q, l).data(), units, false, entries.data());
-    EXPECT_LE(distance(lane(values, l), entries), kTolerance * (1 + largest(entries)));
+    EXPECT_LE(largest_change(lane(values, l), entries), kTolerance * (1 + largest(entries)));
     std::vector<double> second(static_cast<std::size_t>(n * n));
     const auto own = [&](const std::vector<double>& x) { return lane(x, l); };
     f.hessian(system, own(q).data(), own(v).data(), own(lambda).data(), units, second.data());
-    EXPECT_LE(distance(lane(hessian, l), second), kTolerance * (1 + largest(second)));
+    EXPECT_LE(largest_change(lane(hessian, l), second), kTolerance * (1 + largest(second)));
   }
 }
 
@@ -303,7 +301,7 @@ TEST_P(TextTwins, IsTranscribedAlike) {
       std::vector<double> b(a.size());
       f.entries(text_.system.get(), q.data(), units, slopes, a.data());
       g.entries(twin_.system.get(), q.data(), units, slopes, b.data());
-      EXPECT_LE(distance(a, b), kTolerance * (1 + largest(b)));
+      EXPECT_LE(largest_change(a, b), kTolerance * (1 + largest(b)));
     }
     const auto numbers = [this](int count) { return random(count); };
     expect_side_by_side(f, text_.system.get(), units, numbers);
@@ -312,7 +310,7 @@ TEST_P(TextTwins, IsTranscribedAlike) {
     std::vector<double> b(a.size());
     f.hessian(text_.system.get(), q.data(), v.data(), lambda.data(), units, a.data());
     g.hessian(twin_.system.get(), q.data(), v.data(), lambda.data(), units, b.data());
-    EXPECT_LE(distance(a, b), kTolerance * (1 + largest(b)));
+    EXPECT_LE(largest_change(a, b), kTolerance * (1 + largest(b)));
   }
 }
 
@@ -330,8 +328,8 @@ TEST_P(TextTwins, FlowsAlike) {
     const StepPlan plan = StepPlan::equal(0, 2, 40);
     ASSERT_TRUE(text.tangent_flow(plan, z, m).completed()) << method;
     ASSERT_TRUE(twin.tangent_flow(plan, w, expected).completed()) << method;
-    EXPECT_LE(distance(z, w), kTolerance * (1 + largest(w))) << method;
-    EXPECT_LE(distance(m, expected), kTolerance * (1 + largest(expected))) << method;
+    EXPECT_LE(largest_change(z, w), kTolerance * (1 + largest(w))) << method;
+    EXPECT_LE(largest_change(m, expected), kTolerance * (1 + largest(expected))) << method;
   }
 }
 
@@ -386,7 +384,7 @@ TEST_P(HolonomicTwins, TakeTheSamePaths) {
   constexpr double kTolerance = 1e-11;  // of a thousand steps of order six
   z.resize(static_cast<std::size_t>(n));
   w.resize(z.size());
-  EXPECT_LE(distance(z, w), kTolerance);
+  EXPECT_LE(largest_change(z, w), kTolerance);
   EXPECT_NEAR(run.action, expected.action, kTolerance * (1 + std::abs(expected.action)));
   EXPECT_LE(run.holonomic_error, 1e-13);
   EXPECT_LE(run.constraint_error, 1e-13);
@@ -404,7 +402,7 @@ TEST_P(HolonomicTwins, ProjectOnTheManifold) {
   EXPECT_LE(d.holonomic_residuals(0, z).relative_velocity, 8 * kEps);
   std::vector<double> again = z;
   ASSERT_TRUE(d.project_on_manifold(0, again));
-  EXPECT_LE(distance(z, again), 64 * kEps * (1 + largest(z)));
+  EXPECT_LE(largest_change(z, again), 64 * kEps * (1 + largest(z)));
   const std::size_t size = z.size();
   std::vector<double> p(size * size);
   ASSERT_TRUE(d.tangent_projector(0, z, p));
@@ -430,7 +428,7 @@ TEST_P(HolonomicTwins, ProjectOnTheManifold) {
   for (std::size_t i = 0; i < size; ++i) moved[i] += kSmall * step[i];
   std::vector<double> back = moved;
   ASSERT_TRUE(d.project_on_manifold(0, back));
-  EXPECT_LE(distance(moved, back), 1e3 * kSmall * kSmall);
+  EXPECT_LE(largest_change(moved, back), 1e3 * kSmall * kSmall);
 }
 
 // Two and three trailers, whose classes take the compiler longest: what they say at a point.
