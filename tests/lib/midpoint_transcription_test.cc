@@ -281,7 +281,7 @@ TYPED_TEST(MidpointTest, MidpointRuleIsTheDiscreteLegendreTransform) {
         pm[j] = step.stages()(n + j, 0);
         v[j] = step.increments()(j, 0) / h;
       }
-      Vector<double, k> lambda;
+      auto lambda = filled<k>(0.0);
       ASSERT_EQ(this->system_.multipliers(qm, pm, v, lambda), RateStatus::kOk);
       Numbers x(2 * n + k);
       std::copy_n(before.value.data(), n, x.data());
