@@ -15,7 +15,7 @@ namespace {
 struct AcrossTheAxis : testing::Test {
   const BoundaryValueProblem problem = test::heisenberg_group({0.25, 0, 0.5});
   const FieldGrid grid{{0, 0, 0.5}, {{0, {0.25, 0.15, 0.05, -0.05, -0.15, -0.25}, false, 0}}};
-  const FieldTeam nobody;
+  const FieldTeam nobody{};
   FieldPartners alone{nobody};
   FieldSweep sweep{problem, grid, 1, alone};
 
@@ -46,7 +46,7 @@ TEST(FieldSweep, MakesExtremalsAgainThatAreNotExact) {
   const BoundaryValueProblem problem = test::sideways();
   const FieldGrid grid{problem.to, {{1, {1.0}, false, 0}}};
   const GeodesicReport report = find_geodesics(problem);
-  const FieldTeam nobody;
+  const FieldTeam nobody{};
   for (const bool packs : {true, false}) {
     BoundaryValueProblem own = problem;
     own.dynamics.kernel.fills_packs = packs;
@@ -132,7 +132,7 @@ TEST(FieldSweep, KeepsAsManyWaysAsThereAreBranches) {
   };
   const std::vector<int> left{0, 0};
   const std::vector<int> right{0, -1};
-  const FieldTeam nobody;
+  const FieldTeam nobody{};
   for (const int branches : {1, 2}) {
     FieldPartners alone(nobody);
     FieldSweep sweep(problem, grid, branches, alone);

@@ -70,7 +70,7 @@ double drift(const Scene& scene, long steps) {
   for (int i = 0; i < 4; ++i) {
     std::mt19937_64 generator(i);
     auto z = near(scene, generator);
-    const double start = static_cast<double>(energy(system, z));
+    const auto start = static_cast<double>(energy(system, z));
     const auto plan = StepPlan::of_length(0, kStep * static_cast<double>(steps), kStep);
     const FlowSummary summary = dynamics.monitored_flow(plan, span_of(z.value), {});
     if (!summary.completed()) return INFINITY;
