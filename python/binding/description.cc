@@ -80,7 +80,7 @@ Json description(const Model& model) {
 
 }  // namespace
 
-py::str text_of(const Json& json) { return py::str(json_line(json)); }
+py::str text_of(const Json& json) { return {json_line(json)}; }
 
 void add_description(py::module_& module, ModelClass& model) {
   module.attr("version") = kVersion;

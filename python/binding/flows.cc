@@ -34,7 +34,7 @@ FlowRequest request_of(const Model& model, const Texts& options) {
 // (JSON, action, length, trajectory).
 py::tuple flow(const ModelPointer& model, const Texts& options, const py::object& callback) {
   const FlowRequest request = request_of(*model, options);
-  FlowOutcome outcome =
+  auto outcome =
       answer_in_background<FlowOutcome>(callback, [model, request](const Progress& progress) {
         return run_flow(request, [&](long /*steps*/) { return progress; });
       });

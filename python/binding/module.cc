@@ -14,6 +14,7 @@ namespace py = pybind11;
 PYBIND11_MODULE(_carnot, module) {
   using namespace carnot::python;
   // Words may quote what is no UTF-8, such as half a character.
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): pybind11 asks for this type of function
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(thrown);

@@ -27,7 +27,7 @@ py::tuple geodesics(const ModelPointer& model, const Texts& options, const py::o
   take(options, "no-trajectory", without);
   if (without) request.options.samples = 0;
   request.run.no_trajectory = true;  // they go to Python as arrays
-  GeodesicReport report =
+  auto report =
       answer_in_background<GeodesicReport>(callback, [model, request](const Progress& progress) {
         GeodesicOptions search = request.options;
         search.progress = progress;
