@@ -30,11 +30,11 @@ Vector<T, 2 * System::kDof> runge_kutta4_step(const System& system,
 template <class System>
 Matrix<double, 2 * System::kDof, 2 * System::kDof> runge_kutta4_tangent(
     const System& system, double h, const Vector<double, 2 * System::kDof>& z) {
-  constexpr int size = 2 * System::kDof;
-  using J = Jet<double, size>;
-  const Vector<J, size> out = runge_kutta4_step(system, J(h), seeded(z));
-  Matrix<double, size, size> m;
-  for (int i = 0; i < size; ++i) m.row(i) = out[i].v.transpose();
+  constexpr int kSize = 2 * System::kDof;
+  using J = Jet<double, kSize>;
+  const Vector<J, kSize> out = runge_kutta4_step(system, J(h), seeded(z));
+  Matrix<double, kSize, kSize> m;
+  for (int i = 0; i < kSize; ++i) m.row(i) = out[i].v.transpose();
   return m;
 }
 
