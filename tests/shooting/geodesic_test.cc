@@ -278,6 +278,22 @@ TEST(Geodesic, OfAnglesMayBeginTheWrongWayRound) {
   EXPECT_GE(found, 3) << "round-off may change where a path leads";
 }
 
+// Ten of the first twelve starts of some seeds lead to one extremal, at 58.61. A search that ended
+// with it after these missed the least action with three seeds of these eight.
+TEST(Geodesic, OfAnglesMostStartsMayAgreeOnMore) {
+  const BoundaryValueProblem problem =
+      test::falling_cat({2.6523637696437818, -3.0978486087876798, -1.9557457780091838});
+  int found = 0;
+  for (int seed = 0; seed < 8; ++seed) {
+    GeodesicOptions options;
+    options.seed = seed;
+    const GeodesicReport report = find_geodesics(problem, options);
+    ASSERT_EQ(report.status, GeodesicStatus::kConverged) << report.message;
+    found += report.geodesics[0].action < 48.099 ? 1 : 0;
+  }
+  EXPECT_GE(found, 7) << "round-off may change where a path leads";
+}
+
 TEST(Geodesic, FarTargetsAreVerifiedAtKnots) {
   // Nine lengths ahead with a turn: |dq(1)/dp0| is beyond what one forward run can carry.
   const GeodesicReport report = find(test::long_vehicle({0, 0, 0, 0}, {30, 10, 1, 1}, 1));

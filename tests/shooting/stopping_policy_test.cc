@@ -101,6 +101,20 @@ TEST(StoppingPolicy, EndsWhenTheLeastActionIsHitOftenEnough) {
   EXPECT_FALSE(policy.ends({12, 12, 0, 16}, {{12, 0}, 2}));
 }
 
+TEST(StoppingPolicy, AnglesTakeMoreStartsAndMoreHits) {
+  StoppingPolicy policy(options_for(1), true, false);
+  const Competition alone{{12, 0}, 1};
+  ASSERT_TRUE(policy.may_end({12, 12, 0, 12}));
+  ASSERT_TRUE(policy.ends({12, 12, 0, 12}, alone));
+  ASSERT_TRUE(policy.ends({80, 80, 0, 80}, {{20, 0}, 1, 50}));
+  policy.plan_for_angles();
+  EXPECT_FALSE(policy.may_end({31, 31, 0, 31}));
+  EXPECT_TRUE(policy.may_end({32, 32, 0, 0}));
+  EXPECT_TRUE(policy.ends({32, 32, 0, 32}, alone));
+  EXPECT_FALSE(policy.ends({200, 200, 0, 200}, {{99, 200}, 1, 50}));
+  EXPECT_TRUE(policy.ends({200, 200, 0, 200}, {{100, 0}, 1, 50}));
+}
+
 // Crossings are made of what is known: that they find it again does not say that nothing is missed.
 TEST(StoppingPolicy, CrossingsAreNoIndependentStarts) {
   const StoppingPolicy policy(options_for(1), true, false);

@@ -41,4 +41,11 @@ StartScales start_scales(const BoundaryValueProblem& problem) {
   return scales;
 }
 
+bool has_only_angles(const Dynamics& dynamics) {
+  const auto& coordinates = dynamics.info.configuration;
+  return std::all_of(coordinates.begin(),
+                     coordinates.begin() + dynamics.dof,
+                     [](const Coordinate& coordinate) { return coordinate.period > 0; });
+}
+
 }  // namespace carnot::internal

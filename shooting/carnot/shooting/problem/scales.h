@@ -17,4 +17,7 @@ struct StartScales {
 
 StartScales start_scales(const BoundaryValueProblem& problem);
 
+// Whether every coordinate is an angle.
+bool has_only_angles(const Dynamics& dynamics);
+
 }  // namespace carnot::internal

@@ -8,6 +8,7 @@
 #include "carnot/shooting/extremal/abnormal_curve.h"
 #include "carnot/shooting/extremal/classification.h"
 #include "carnot/shooting/extremal/ranking.h"
+#include "carnot/shooting/problem/scales.h"
 #include "carnot/shooting/search/polish.h"
 
 namespace carnot::internal {
@@ -38,7 +39,10 @@ Search::Search(const BoundaryValueProblem& problem, const GeodesicOptions& optio
       ladder_(problem),
       discrete_(ladder_),
       seeks_abnormal_(may_have_abnormal_curves(problem)) {
-  if (problem.dynamics.has_transcription()) return;
+  if (problem.dynamics.has_transcription()) {
+    if (!near_ && has_only_angles(problem.dynamics)) policy_.plan_for_angles();
+    return;
+  }
   if (problem.dynamics.forced > 0 && !problem.dynamics.on_leaves) return;
   drift_.emplace(problem, options.seed);
   intervals_ = drift_->intervals();

@@ -83,12 +83,9 @@ BoundaryValueProblem at_start(const BoundaryValueProblem& problem,
 // keep to 1 rad, 18 of them without a warning: most starts lead to one extremal, and the search
 // ends soon. With a full turn for simple wiggles 12 are missed and 2 without a warning. With a full
 // turn for all of them 11 and 1, but of 24 seeds 16 find the hard target of the test, and not 21.
-double largest_turn(const SceneInfo& info, int n, int modes) {
+double largest_turn(const Dynamics& dynamics, int modes) {
   constexpr double kSmall = 1;
-  const auto is_angle = [](const Coordinate& coordinate) { return coordinate.period > 0; };
-  const auto& coordinates = info.configuration;
-  const bool only_angles = std::all_of(coordinates.begin(), coordinates.begin() + n, is_angle);
-  return only_angles && modes == kFew ? 2 * std::numbers::pi : kSmall;
+  return modes == kFew && has_only_angles(dynamics) ? 2 * std::numbers::pi : kSmall;
 }
 
 // The straight line plus sum_m a_m sin(m pi s), in units of `size`.
@@ -99,7 +96,7 @@ Path wiggled_line(const BoundaryValueProblem& problem,
                   const std::vector<double>& a) {
   const int n = problem.dynamics.dof;
   const int modes = static_cast<int>(a.size()) / n;
-  const double most = largest_turn(problem.dynamics.info, n, modes);
+  const double most = largest_turn(problem.dynamics, modes);
   Path path;
   path.intervals = intervals;
   path.dof = n;

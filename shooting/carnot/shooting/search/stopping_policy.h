@@ -24,6 +24,14 @@ struct SearchTally {
   int crossings_converged = 0;  // of those that converged
 };
 
+// How many starts a search asks for before it ends.
+struct Caution {
+  int easy;            // the least number, where most starts agree
+  int starts;          // the least number, where they do not
+  int sure;            // hits of the least action that are enough whatever seems to be missed
+  int with_crossings;  // the same with hits by crossings
+};
+
 class StoppingPolicy {
  public:
   // `by_paths`: starts are paths, not momenta. `near`: paths are relaxed to a target further away.
@@ -31,6 +39,8 @@ class StoppingPolicy {
 
   // For starts of drift: so many of scaled drift, which are all tried, and at most so many more.
   void plan_for(int scaled, int actuated);
+  // For configurations of angles only, which take more caution.
+  void plan_for_angles();
 
   // More than the extremal of least action.
   [[nodiscard]] bool wants_more() const { return wants_more_; }
@@ -65,6 +75,7 @@ class StoppingPolicy {
   int limit_;
   bool by_drift_ = false;
   int first_ = 0;  // starts that are tried in any case
+  Caution caution_;
   int enough_hits_;
   int sweeps_;
 };
