@@ -63,8 +63,8 @@ void plan(const Node& start, const Bound& left) {
 }
 
 std::vector<double> values(double first, double step, int count) {
-  std::vector<double> x;
-  for (int i = 0; i < count; ++i) x.push_back(first + i * step);
+  std::vector<double> x(count);
+  for (int i = 0; i < count; ++i) x[i] = first + i * step;
   return x;
 }
 
