@@ -69,7 +69,20 @@ struct Dynamics {
                                         std::span<double> z,
                                         std::span<double> m) const {
     assert(std::ssize(z) == 2 * dof && std::ssize(m) == 4 * dof * dof);
-    return kernel.calls.tangent_flow(system.get(), kernel.method.get(), plan, z.data(), m.data());
+    return kernel.calls.tangent_flow(
+        system.get(), kernel.method.get(), plan, z.data(), m.data(), nullptr);
+  }
+  // The same step by step: row i of `nodes`, plan.count x 2n, is z after step i, and tangents[i],
+  // row-major 2n x 2n, is the derivative of that step by the node before. In half the time of a
+  // call for each step. No allocation.
+  [[nodiscard]] FlowReport tangent_steps(const StepPlan& plan,
+                                         std::span<double> z,
+                                         std::span<double> nodes,
+                                         std::span<double> tangents) const {
+    assert(std::ssize(z) == 2 * dof && std::ssize(nodes) == 2 * dof * plan.count);
+    assert(std::ssize(tangents) == 4 * dof * dof * plan.count);
+    return kernel.calls.tangent_flow(
+        system.get(), kernel.method.get(), plan, z.data(), tangents.data(), nodes.data());
   }
   // Advances z with an error of about `tolerance`, constant steps chosen by a trial; see
   // automatic_flow.h. Only where has_automatic_flow(). No allocation.

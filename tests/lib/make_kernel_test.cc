@@ -91,6 +91,39 @@ TEST_P(MakeKernel, TangentsAgree) {
   EXPECT_LE(largest_change(ma, mb), kRoundOff * largest);
 }
 
+// The derivatives of the steps, one after the other, are that of the flow.
+TEST_P(MakeKernel, TangentsOfStepsMakeThatOfTheFlow) {
+  const auto size = static_cast<int>(pair_.start.size());
+  const auto square = static_cast<std::size_t>(size) * size;
+  const auto steps = static_cast<std::size_t>(plan_.count);
+  for (const Dynamics* dynamics : {&pair_.compiled, &pair_.direct}) {
+    std::vector<double> end = pair_.start;
+    std::vector<double> whole(square);
+    ASSERT_TRUE(dynamics->tangent_flow(plan_, end, whole).completed());
+    std::vector<double> z = pair_.start;
+    std::vector<double> nodes(steps * pair_.start.size());
+    std::vector<double> tangents(steps * square);
+    ASSERT_TRUE(dynamics->tangent_steps(plan_, z, nodes, tangents).completed());
+    EXPECT_EQ(z, end);
+    EXPECT_EQ(std::vector<double>(nodes.end() - size, nodes.end()), end);
+    std::vector<double> product(square, 0.0);
+    for (int r = 0; r < size; ++r) product[r * size + r] = 1;
+    for (std::size_t i = 0; i < steps; ++i) {
+      std::vector<double> next(square, 0.0);
+      for (int r = 0; r < size; ++r) {
+        for (int k = 0; k < size; ++k) {
+          const double entry = tangents[i * square + r * size + k];
+          for (int c = 0; c < size; ++c) next[r * size + c] += entry * product[k * size + c];
+        }
+      }
+      product = next;
+    }
+    double largest = 1;
+    for (const double x : whole) largest = std::max(largest, std::abs(x));
+    EXPECT_LE(largest_change(product, whole), kRoundOff * largest);
+  }
+}
+
 TEST_P(MakeKernel, MonitorsAgree) {
   std::vector<double> a = pair_.start;
   std::vector<double> b = pair_.start;
@@ -192,6 +225,15 @@ TEST(MakeKernelTangent, TakesTurnsOffAngles) {
   for (int j = 0; j < 8; ++j) {
     EXPECT_NEAR(at_far[j] - far[j], at_near[j] - near[j], kRoundOff + kEps * std::abs(far[j]));
   }
+  // And gives them back at each node.
+  std::vector<double> z = far;
+  std::vector<double> nodes(16 * 8);
+  std::vector<double> tangents(16 * 64);
+  ASSERT_TRUE(dynamics.tangent_steps(plan, z, nodes, tangents).completed());
+  for (int i = 0; i < 16; ++i) {
+    for (int j : {2, 3}) EXPECT_NEAR(nodes[i * 8 + j], far[j], 10) << i;
+  }
+  EXPECT_EQ(std::vector<double>(nodes.end() - 8, nodes.end()), at_far);
 }
 
 TEST(MakeKernelBatch, AdvancesManyAsOne) {

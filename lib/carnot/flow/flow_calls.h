@@ -12,9 +12,14 @@ namespace carnot {
 
 struct FlowCalls {
   FlowReport (*flow)(const void* system, const void* method, const StepPlan&, double* z) = nullptr;
-  // m: the derivative of the end by the start, row-major 2n x 2n.
-  FlowReport (*tangent_flow)(
-      const void* system, const void* method, const StepPlan&, double* z, double* m) = nullptr;
+  // m: the derivative of the end by the start, row-major 2n x 2n. Or with `nodes`: there each z
+  // after a step, and in m the derivative of each step, one after the other.
+  FlowReport (*tangent_flow)(const void* system,
+                             const void* method,
+                             const StepPlan&,
+                             double* z,
+                             double* m,
+                             double* nodes) = nullptr;
   FlowSummary (*monitored_flow)(const void* system,
                                 const void* method,
                                 const StepPlan&,

@@ -97,8 +97,12 @@ FlowReport flow(const void* opaque, const void* data, const StepPlan& plan, doub
 }
 
 template <class M>
-FlowReport tangent_flow(
-    const void* opaque, const void* data, const StepPlan& plan, double* z, double* m) {
+FlowReport tangent_flow(const void* opaque,
+                        const void* data,
+                        const StepPlan& plan,
+                        double* z,
+                        double* m,
+                        double* nodes) {
   constexpr int kSize = 2 * M::n;
   using Square = Matrix<double, kSize, kSize>;
   const M& method = *static_cast<const M*>(data);
@@ -108,15 +112,21 @@ FlowReport tangent_flow(
   auto winding = method.winding;
   winding.fold(state);
   Compensated<Square> tangent{identity<kSize, double>(), filled<kSize, kSize>(0.0)};
-  const FlowReport report =
-      carnot::tangent_flow(stepper, plan, state, tangent, [&](long, const auto&, auto& node) {
-        winding.fold(node);
-        return true;
-      });
+  const auto store_tangent = [&](double* to) {
+    for (int r = 0; r < kSize; ++r) {
+      for (int c = 0; c < kSize; ++c) to[r * kSize + c] = tangent.value(r, c);
+    }
+  };
+  const auto observe = [&](long i, const auto&, auto& node) {
+    winding.fold(node);
+    if (nodes != nullptr) store(winding.unfolded(node).value, nodes + i * kSize);
+    if (nodes != nullptr) store_tangent(m + i * kSize * kSize);
+    return true;
+  };
+  const TangentOf of = nodes == nullptr ? TangentOf::kFlow : TangentOf::kStep;
+  const FlowReport report = carnot::tangent_flow(stepper, plan, state, tangent, observe, of);
   store(winding.unfolded(state).value, z);
-  for (int r = 0; r < kSize; ++r) {
-    for (int c = 0; c < kSize; ++c) m[r * kSize + c] = tangent.value(r, c);
-  }
+  if (nodes == nullptr) store_tangent(m);
   return report;
 }
 

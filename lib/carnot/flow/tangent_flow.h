@@ -7,21 +7,27 @@
 
 namespace carnot {
 
-// Advances z and m; start with m = identity. `m` is d z(t)/d z(0), 2n x 2n. The observer
-// is that of flow(). A tangent that cannot be formed counts as a failed rate; m is then that of the
-// step before.
+// What m is the derivative of: z by its value at the start, or at the step before.
+enum class TangentOf { kFlow, kStep };
+
+// Advances z and m; start with m = identity. `m` is d z(t)/d z(0), 2n x 2n, and of steps the
+// identity again after each one was observed. The observer is that of flow(). A tangent that cannot
+// be formed counts as a failed rate; m is then that of the step before.
 template <class Stepper, class Observer>
 FlowReport tangent_flow(
     Stepper& stepper,
     const StepPlan& plan,
     State<typename Stepper::Scalar, Stepper::kDof>& z,
     Compensated<Matrix<typename Stepper::Scalar, Stepper::kSize, Stepper::kSize>>& m,
-    Observer&& observe) {
+    Observer&& observe,
+    TangentOf of = TangentOf::kFlow) {
   Tangent<Stepper> tangent;
   bool tangent_ok = true;
   FlowReport report = flow(stepper, plan, z, [&](long i, const Stepper& done, auto& state) {
     tangent_ok = tangent.advance(done, m);
-    return tangent_ok && observe(i, done, state);
+    const bool goes_on = tangent_ok && observe(i, done, state);
+    if (goes_on && of == TangentOf::kStep) tangent.restart(m);
+    return goes_on;
   });
   if (!tangent_ok) {
     report.status = FlowStatus::kStepFailed;

@@ -39,6 +39,10 @@ class Tangent<Rattle<System_, T_>> {
     m = next;
     return true;
   }
+  // M <- identity.
+  void restart(Compensated<Square>& m) const {
+    m = {identity<kSize, T>(), filled<kSize, kSize>(T(0))};
+  }
   // Why the last advance() failed.
   [[nodiscard]] RateStatus failure() const { return failure_; }
 

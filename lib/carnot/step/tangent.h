@@ -60,6 +60,22 @@ class Tangent {
     moved_ = sum;
     return true;
   }
+  // M <- identity. What the last step added is then taken for what it would have added to that:
+  // from there the next one is extrapolated, as where M goes on.
+  void restart(Compensated<Square>& m) {
+    const Square inverse = symplectic_inverse(m.value);
+    if (packed_step_ != T(0)) {
+      for (int r = 0; r < kSize; ++r) packed_row_by(inverse, r);
+    }
+    for (int i = 0; plain_step_ != T(0) && i < count_; ++i) {
+      multiply(increment_[i], inverse, last_[i]);
+      increment_[i] = last_[i];
+    }
+    multiply(moved_, inverse, m.compensation);
+    moved_ = m.compensation;
+    m.value = identity<kSize, T>();
+    set_zero(m.compensation);
+  }
   // Why the last advance() failed.
   [[nodiscard]] RateStatus failure() const { return failure_; }
 
@@ -81,6 +97,36 @@ class Tangent {
         for (int i = 0; i < kSize; ++i) column[i] += a(i, k) * b(k, j);
       }
       for (int i = 0; i < kSize; ++i) c(i, j) = column[i];
+    }
+  }
+
+  // -J M'J: the inverse of M where it is symplectic, as that of a step is, but for methods of
+  // another kind.
+  static Square symplectic_inverse(const Square& m) {
+    Square inverse;
+    for (int r = 0; r < kDof; ++r) {
+      for (int c = 0; c < kDof; ++c) {
+        inverse(r, c) = m(kDof + c, kDof + r);
+        inverse(r, kDof + c) = -m(c, kDof + r);
+        inverse(kDof + r, c) = -m(kDof + c, r);
+        inverse(kDof + r, kDof + c) = m(c, r);
+      }
+    }
+    return inverse;
+  }
+  // Row r of the increments of all stages side by side, times a matrix.
+  void packed_row_by(const Square& matrix, int r) {
+    if constexpr (Step::kRows) {
+      constexpr int s = Step::kLanes;
+      std::array<T, kSize * s> row;
+      row.fill(T(0));
+      const auto entry = [&](int c) { return &tangents_[(c * kSize + r) * s]; };
+      for (int c = 0; c < kSize; ++c) {
+        for (int j = 0; j < kSize; ++j) {
+          for (int l = 0; l < s; ++l) row[c * s + l] += matrix(j, c) * entry(j)[l];
+        }
+      }
+      for (int c = 0; c < kSize; ++c) std::copy_n(&row[c * s], s, entry(c));
     }
   }
 

@@ -315,15 +315,24 @@ FlowReport flow(const void* opaque, const void*, const StepPlan& plan, double* z
 }
 
 FlowReport tangent_flow(
-    const void* opaque, const void*, const StepPlan& plan, double* z, double* m) {
+    const void* opaque, const void*, const StepPlan& plan, double* z, double* m, double* nodes) {
   const Rescaled& r = Rescaled::from(opaque);
-  const std::size_t size = 2 * r.dof();
+  const auto size = static_cast<std::size_t>(2 * r.dof());
+  const StepPlan own = r.in_own_time(plan);
+  const std::size_t maps = nodes == nullptr ? 1 : static_cast<std::size_t>(plan.count);
+  const std::span<double> at(z, size);
+  const std::span<double> tangents(m, maps * size * size);
   Rescaled::scale(z, r.z, 2 * r.dof(), z);
-  FlowReport report = r.own.tangent_flow(r.in_own_time(plan), {z, size}, {m, size * size});
+  FlowReport report = nodes == nullptr
+                          ? r.own.tangent_flow(own, at, tangents)
+                          : r.own.tangent_steps(own, at, {nodes, maps * size}, tangents);
   Rescaled::unscale(z, r.z, 2 * r.dof(), z);
-  for (std::size_t row = 0; row < size; ++row) {
-    for (std::size_t column = 0; column < size; ++column) {
-      m[row * size + column] *= r.z[column] / r.z[row];
+  for (std::size_t i = 0; i < maps; ++i) {
+    if (nodes != nullptr) {
+      Rescaled::unscale(nodes + i * size, r.z, 2 * r.dof(), nodes + i * size);
+    }
+    for (std::size_t entry = 0; entry < size * size; ++entry) {
+      tangents[i * size * size + entry] *= r.z[entry % size] / r.z[entry / size];
     }
   }
   convert(r, report);
