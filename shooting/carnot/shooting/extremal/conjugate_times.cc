@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "carnot/numerics/linear_algebra.h"
+#include "carnot/shooting/extremal/step_maps.h"
 #include "carnot/shooting/linear/dense.h"
 #include "carnot/shooting/linear/lagrangian_plane.h"
 #include "carnot/shooting/linear/round_off.h"
@@ -19,39 +19,9 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kFarScale = 100;  // of scales along a path: phases of 1e-4 still keep their digits
-
-// The directions Dh' at a phase point, orthonormal: vectors (a, 0) that are normal to the manifold
-// {h = 0, Dh H_p = 0}.
-MatrixXd normals_at(const Dynamics& dynamics, double t, const std::vector<double>& z) {
-  const int n = dynamics.dof;
-  RowMajor projector(2 * n, 2 * n);
-  if (!dynamics.tangent_projector(t, z, span_of(projector))) {
-    projector.setConstant(std::nan(""));
-  }
-  return right_singular(projector.leftCols(n)).vectors.rightCols(dynamics.forced);
-}
-
-// Advances z and gives the matrix that carries a plane with it.
-//
-// RATTLE maps (0, Dh') to zero and all else into the tangent space of the manifold. There planes of
-// half its dimension are Lagrangian for the form of the manifold, and with (0, Dh') at the same
-// point they are Lagrangian in R^2n, for Dh dq = 0. So (0, Dh') at the start is mapped to (0, Dh')
-// at the end, by which as many phases as there are forces stay at 0.
-bool carry(const Dynamics& dynamics, const StepPlan& plan, std::vector<double>& z, RowMajor& m) {
-  const bool on_manifold = dynamics.forced > 0 && !dynamics.on_leaves;
-  MatrixXd before;
-  if (on_manifold) before = normals_at(dynamics, plan.start, z);
-  if (!dynamics.tangent_flow(plan, z, span_of(m)).completed()) return false;
-  if (!on_manifold) return true;
-  const int n = dynamics.dof;
-  const MatrixXd after = normals_at(dynamics, plan.end, z);
-  m.bottomRightCorner(n, n) += product(after, before.transpose());
-  return m.allFinite();
-}
 
 // For a plane (X / c, P c): what c is to be multiplied by for X and P to be of one size. Where one
 // of them vanishes, so much as loses no digits.
@@ -93,12 +63,19 @@ class Planes {
 
   // The frame at time t, in as many steps of the method as det W needs to be followed. False when
   // a step fails or W turns too fast.
-  [[nodiscard]] bool advance(const Frame& from, double t, Frame& to, int halvings = 30) const {
-    if (!step(from, t, to)) return false;
-    if (std::abs(to.phi - from.phi) < kLargestTurn) return true;
-    Frame middle;
-    return halvings > 0 && advance(from, 0.5 * (from.t + t), middle, halvings - 1) &&
-           advance(middle, t, to, halvings - 1);
+  [[nodiscard]] bool advance(const Frame& from,
+                             double t,
+                             Frame& to,
+                             int halvings = kMostHalvings) const {
+    StepMap step{from.z, {}};
+    return take_step(dynamics_, units_, from.t, t - from.t, step) &&
+           carry(from, t, std::move(step), to) &&
+           (follows(from, to) || advance_by_halves(from, t, to, halvings));
+  }
+  // The same from the begin of step i to its end.
+  [[nodiscard]] bool advance(const Frame& from, const JoinedSteps& steps, long i, Frame& to) const {
+    return take(from, steps, i, to) &&
+           (follows(from, to) || advance_by_halves(from, steps.end(i), to, kMostHalvings));
   }
 
   // N at a frame, as a real number that is near an integer; phases nearer to zero than `tolerance`
@@ -137,10 +114,7 @@ class Planes {
   // The scales at `steps` equal steps for which X and P are of one size, but for times where one of
   // them vanishes and soon does no more: medians over a part of the path. Nothing where a step
   // fails.
-  [[nodiscard]] std::vector<double> typical_scales(Frame frame,
-                                                   const Knots& knots,
-                                                   double time,
-                                                   long steps) const;
+  [[nodiscard]] std::vector<double> typical_scales(Frame frame, const JoinedSteps& steps) const;
 
   // Whether a phase is so near to zero that round-off may have put it on the wrong side.
   [[nodiscard]] bool ambiguous(const Frame& frame) const { return near_zero(frame, doubt_) > 0; }
@@ -165,18 +139,16 @@ class Planes {
   }
 
  private:
-  [[nodiscard]] bool step(const Frame& from, double t, Frame& to) const {
+  // Carries a frame by a step to time t, or by step i of some.
+  [[nodiscard]] bool carry(const Frame& from, double t, StepMap step, Frame& to) const {
     const int n = dynamics_.dof;
-    RowMajor m(2 * n, 2 * n);
     to.t = t;
-    to.z = from.z;
-    const StepPlan plan = StepPlan::equal(from.t, t - from.t, 1);
-    if (!carry(dynamics_, plan, to.z, m)) return false;
+    to.z = std::move(step.z);
     to.scale = from.scale;
     MatrixXd carried = from.plane;
     carried.topRows(n) = to.scale * product(s_, carried.topRows(n));
     carried.bottomRows(n) = product(inverse_, carried.bottomRows(n)) / to.scale;
-    carried = product(units_.map(m), carried);
+    carried = product(step.map, carried);
     carried.topRows(n) = product(inverse_, carried.topRows(n)) / to.scale;
     carried.bottomRows(n) = to.scale * product(s_, carried.bottomRows(n));
     if (!carried.allFinite()) return false;
@@ -186,7 +158,21 @@ class Planes {
     to.phi = from.phi + std::remainder(2 * (to.phases.turn - from.phases.turn), kTurn);
     return true;
   }
+  [[nodiscard]] bool take(const Frame& from, const JoinedSteps& steps, long i, Frame& to) const {
+    StepMap step;
+    return steps.read(i, step) && carry(from, steps.end(i), std::move(step), to);
+  }
+  // Whether det W turned so little from one frame to the next that its argument is continuous.
+  [[nodiscard]] static bool follows(const Frame& from, const Frame& to) {
+    return std::abs(to.phi - from.phi) < kLargestTurn;
+  }
+  [[nodiscard]] bool advance_by_halves(const Frame& from, double t, Frame& to, int halvings) const {
+    Frame middle;
+    return halvings > 0 && advance(from, 0.5 * (from.t + t), middle, halvings - 1) &&
+           advance(middle, t, to, halvings - 1);
+  }
 
+  static constexpr int kMostHalvings = 30;
   static constexpr double kLargestTurn = 0.8;  // of det W in one step; 2 pi more would go unseen
 
   const Dynamics& dynamics_;
@@ -198,24 +184,15 @@ class Planes {
   double doubt_;
 };
 
-std::vector<double> Planes::typical_scales(Frame frame,
-                                           const Knots& knots,
-                                           double time,
-                                           long steps) const {
+std::vector<double> Planes::typical_scales(Frame frame, const JoinedSteps& joined) const {
   constexpr long kParts = 16;
-  const int n = dynamics_.dof;
-  const double h = time / static_cast<double>(steps);
-  const long per_segment = steps / knots.segments;
+  const long steps = joined.count();
   std::vector<double> scales;
-  for (long i = 1; i <= steps; ++i) {
+  for (long i = 0; i < steps; ++i) {
     Frame next;
-    if (!step(frame, static_cast<double>(i) * h, next)) return {};
+    if (!take(frame, joined, i, next)) return {};
     set_scale(next.scale * even_factor(next.plane), next);
     scales.push_back(next.scale);
-    if (i % per_segment == 0) {
-      const double* knot = knots.at(static_cast<int>(i / per_segment));
-      next.z.assign(knot, knot + 2 * n);
-    }
     frame = std::move(next);
   }
   std::vector<double> medians;
@@ -288,38 +265,26 @@ std::optional<Graph> typical_graph(double begin,
                                    double end,
                                    bool scaled,
                                    const BoundaryValueProblem& problem,
-                                   const Units& units,
                                    const Knots& knots,
-                                   long steps) {
-  const int n = problem.dynamics.dof;
-  const int last = std::max(1, static_cast<int>(end * knots.segments));
-  const double piece = (knots.segments == 1 ? end : 1.0 / knots.segments) * problem.time;
-  const double first = begin * problem.time;
-  const long count = std::max(2L, std::lround(static_cast<double>(steps) * piece / problem.time));
-  const double h = piece / static_cast<double>(count);
+                                   const JoinedSteps& steps) {
   MatrixXd plane = first_frame(problem, knots).plane;
   double scale = 1;
   std::vector<Graph> graphs;
-  for (int i = 0; i < last; ++i) {
-    std::vector<double> z(knots.at(i), knots.at(i) + 2 * n);
-    for (long j = 0; j < count; ++j) {
-      const double t = i * piece + static_cast<double>(j) * h;
-      RowMajor m(2 * n, 2 * n);
-      const StepPlan plan = StepPlan::equal(t, h, 1);
-      if (!carry(problem.dynamics, plan, z, m)) return std::nullopt;
-      scale_plane(1 / scale, plane);
-      plane = product(units.map(m), plane);
-      scale_plane(scale, plane);
-      if (scaled) {
-        const double by = even_factor(plane);
-        scale_plane(by, plane);
-        scale *= by;
-      }
-      plane = orthonormal(plane);
-      if (t + h < first) continue;
-      Graph next = graph_of(plane);
-      if (next.balance.allFinite()) graphs.push_back(std::move(next));
+  StepMap step;
+  for (long i = 0; i < steps.count() && (i == 0 || steps.end(i) <= end * problem.time); ++i) {
+    if (!steps.read(i, step)) return std::nullopt;
+    scale_plane(1 / scale, plane);
+    plane = product(step.map, plane);
+    scale_plane(scale, plane);
+    if (scaled) {
+      const double by = even_factor(plane);
+      scale_plane(by, plane);
+      scale *= by;
     }
+    plane = orthonormal(plane);
+    if (steps.end(i) < begin * problem.time) continue;
+    Graph next = graph_of(plane);
+    if (next.balance.allFinite()) graphs.push_back(std::move(next));
   }
   if (graphs.empty()) return std::nullopt;
   // A conjugate time that is met by chance shows a kernel at this time only.
@@ -338,13 +303,12 @@ std::optional<Graph> typical_graph(double begin,
 std::optional<Graph> balance_of(double fraction,
                                 bool scaled,
                                 const BoundaryValueProblem& problem,
-                                const Units& units,
                                 const Knots& knots,
-                                long steps) {
+                                const JoinedSteps& steps) {
   constexpr double kLate = 0.9;
-  auto graph = typical_graph(0.5 * fraction, fraction, scaled, problem, units, knots, steps);
+  auto graph = typical_graph(0.5 * fraction, fraction, scaled, problem, knots, steps);
   if (!graph || graph->kernel == 0) return graph;
-  auto late = typical_graph(kLate, 1, scaled, problem, units, knots, steps);
+  auto late = typical_graph(kLate, 1, scaled, problem, knots, steps);
   return late && late->kernel < graph->kernel ? late : graph;
 }
 
@@ -362,28 +326,27 @@ bool tells_kernels(const Knots& knots) {
   return extent >= kLeastExtent;
 }
 
-// One pass at a given number of steps, balanced by what is before `fraction` T; where `scaled`,
-// with scales that change along the path.
+// One pass, balanced by what is before `fraction` T; where `scaled`, with scales that change along
+// the path.
 ConjugateTimes follow(double fraction,
                       bool scaled,
                       const BoundaryValueProblem& problem,
                       const Units& units,
                       const Knots& knots,
-                      long steps,
+                      const JoinedSteps& steps,
                       const ConjugateTimesOptions& options) {
   const int n = problem.dynamics.dof;
   ConjugateTimes result;
-  const std::optional<Graph> graph = balance_of(fraction, scaled, problem, units, knots, steps);
+  const std::optional<Graph> graph = balance_of(fraction, scaled, problem, knots, steps);
   const int known = problem.dynamics.forced;  // momenta along Dh move nothing
   if (!graph || (graph->kernel > known && !units.scaled() && !tells_kernels(knots))) return result;
   result.corank = graph->kernel;
   if (graph->kernel == n) return result;
   const Planes planes(problem.dynamics, units, graph->balance, graph->kernel, options.precision);
-  const long per_segment = std::max(1L, (steps + knots.segments - 1) / knots.segments);
   Frame frame = first_frame(problem, knots);
   std::vector<double> scales;
   if (scaled) {
-    scales = planes.typical_scales(frame, knots, problem.time, per_segment * knots.segments);
+    scales = planes.typical_scales(frame, steps);
     if (scales.empty()) return result;
     frame.scale = scales.front();  // the directions of q and of p at the start have the same phases
   }
@@ -395,21 +358,15 @@ ConjugateTimes follow(double fraction,
     }
     return count == counted || result.times.size() == options.most;
   };
-  for (long i = 1; i <= per_segment * knots.segments; ++i) {
-    const double t =
-        problem.time * static_cast<double>(i) / static_cast<double>(per_segment * knots.segments);
+  for (long i = 0; i < steps.count(); ++i) {
     Frame next;
-    if (!planes.advance(frame, t, next)) return result;
-    if (i % per_segment == 0) {
-      const double* knot = knots.at(static_cast<int>(i / per_segment));
-      next.z.assign(knot, knot + 2 * n);
-    }
-    frame = next;
+    if (!planes.advance(frame, steps, i, next)) return result;
+    frame = std::move(next);
     if (scaled && !planes.ambiguous(frame)) {
-      const double change = scales[i - 1] / frame.scale;
-      if (change > kFarScale || change < 1 / kFarScale) planes.set_scale(scales[i - 1], frame);
+      const double change = scales[i] / frame.scale;
+      if (change > kFarScale || change < 1 / kFarScale) planes.set_scale(scales[i], frame);
     }
-    if (i == per_segment * knots.segments || planes.ambiguous(frame)) continue;
+    if (i + 1 == steps.count() || planes.ambiguous(frame)) continue;
     if (!count_to(static_cast<int>(std::lround(planes.count(frame))), frame)) return result;
     clear = frame;
     if (result.times.size() == options.most) {
@@ -433,7 +390,8 @@ ConjugateTimes follow(double fraction,
 }
 
 // A phase that makes a whole turn within one step goes unseen: two passes, of other steps and
-// another balance, must agree.
+// another balance, must agree. Each joins two steps of the next one, so that the first two are made
+// of the same flow.
 ConjugateTimes agreed(bool scaled,
                       const BoundaryValueProblem& problem,
                       const Units& units,
@@ -442,12 +400,16 @@ ConjugateTimes agreed(bool scaled,
                       const ConjugateTimesOptions& options) {
   constexpr int kDoublings = 4;
   constexpr std::array kFractions{0.43, 0.31};
-  const auto pass = [&](int i) {
-    return follow(kFractions[i % 2], scaled, problem, units, knots, steps << i, options);
-  };
-  ConjugateTimes coarse = pass(0);
+  const long per_segment = std::max(1L, (steps + knots.segments - 1) / knots.segments);
+  ConjugateTimes coarse;
   for (int i = 1; i <= kDoublings; ++i) {
-    ConjugateTimes fine = pass(i);
+    StepMaps maps(problem, units, knots, per_segment << i);
+    const auto pass = [&](int number, int together) {
+      const JoinedSteps joined(maps, together);
+      return follow(kFractions[number % 2], scaled, problem, units, knots, joined, options);
+    };
+    if (i == 1) coarse = pass(0, 2);
+    ConjugateTimes fine = pass(i, 1);
     if (coarse.known && fine.known && coarse.times.size() == fine.times.size() &&
         coarse.corank == fine.corank) {
       return fine;
