@@ -238,29 +238,38 @@ std::vector<double> units2(Chain& chain) {
   return units;
 }
 
-// (J'J + D) step = -J'r. Returns the gain that the linear model predicts; 0 where it cannot tell.
-double damped_step(Chain& chain,
-                   const std::vector<double>& unit2,
-                   double radius,
-                   std::vector<double>& step) {
-  constexpr double kLeastDiagonal = 1e-6;
-  constexpr double kLargestDiagonal = 1e32;
-  BandedCholesky damped = chain.normal();
-  std::vector<double> damping(step.size());
-  for (int j = 0; j < chain.size(); ++j) {
-    const double scaled = chain.diagonal(j) * unit2[j];
-    damping[j] = std::clamp(scaled, kLeastDiagonal, kLargestDiagonal) / (radius * unit2[j]);
-    damped(j, j) += damping[j];
-    step[j] = -chain.gradient()[j];
+// (J'J + D) step = -J'r.
+class DampedStep {
+ public:
+  explicit DampedStep(const Chain& chain) : damped_(chain.normal()), damping_(chain.size()) {}
+
+  // Returns the gain that the linear model predicts; 0 where it cannot tell.
+  double solve(Chain& chain,
+               const std::vector<double>& unit2,
+               double radius,
+               std::vector<double>& step) {
+    constexpr double kLeastDiagonal = 1e-6;
+    constexpr double kLargestDiagonal = 1e32;
+    damped_ = chain.normal();
+    for (int j = 0; j < chain.size(); ++j) {
+      const double scaled = chain.diagonal(j) * unit2[j];
+      damping_[j] = std::clamp(scaled, kLeastDiagonal, kLargestDiagonal) / (radius * unit2[j]);
+      damped_(j, j) += damping_[j];
+      step[j] = -chain.gradient()[j];
+    }
+    if (!damped_.factor()) return 0;
+    damped_.substitute(step);
+    double gain = 0;
+    for (int j = 0; j < chain.size(); ++j) {
+      gain += 0.5 * step[j] * (damping_[j] * step[j] - chain.gradient()[j]);
+    }
+    return std::isfinite(gain) ? gain : 0;
   }
-  if (!damped.factor()) return 0;
-  damped.substitute(step);
-  double gain = 0;
-  for (int j = 0; j < chain.size(); ++j) {
-    gain += 0.5 * step[j] * (damping[j] * step[j] - chain.gradient()[j]);
-  }
-  return std::isfinite(gain) ? gain : 0;
-}
+
+ private:
+  BandedCholesky damped_;
+  std::vector<double> damping_;
+};
 
 }  // namespace
 
@@ -274,6 +283,7 @@ int minimise_chain(const ChainResiduals& residuals_of,
   double cost = chain.linearise(x);
   if (chain.size() == 0 || !std::isfinite(cost)) return 0;
   const std::vector<double> unit2 = units2(chain);
+  DampedStep damped(chain);
   std::vector<double> step(chain.size());
   std::vector<double> trial = x;
   TrustRegion region{options.radius};
@@ -282,7 +292,7 @@ int minimise_chain(const ChainResiduals& residuals_of,
   while (!done && iterations < options.max_iterations && std::isfinite(cost) &&
          largest(chain.gradient()) > options.gradient_tolerance) {
     ++iterations;
-    const double predicted = damped_step(chain, unit2, region.radius, step);
+    const double predicted = damped.solve(chain, unit2, region.radius, step);
     if (!(predicted > 0)) {
       region.reject();
       continue;

@@ -90,10 +90,10 @@ void DiscreteEquations::add_between(int i,
     residual[first + place] += terms.gradient[a];
     if (matrix == nullptr) continue;
     double* const to = &(*matrix)(first + place, first);
-    const double* const from = &terms.hessian[a * m_];
-    for (int b = 0; b < n_; ++b) to[b] += from[b];
-    for (int b = 0; b < k_; ++b) to[n_ + b] += from[2 * n_ + b];
-    for (int b = 0; b < n_; ++b) to[n_ + k_ + b] += from[n_ + b];
+    const PathLagrangian::Numbers row = terms.hessian.part(a * m_, m_);
+    for (int b = 0; b < n_; ++b) to[b] += row[b];
+    for (int b = 0; b < k_; ++b) to[n_ + b] += row[2 * n_ + b];
+    for (int b = 0; b < n_; ++b) to[n_ + k_ + b] += row[n_ + b];
   }
 }
 

@@ -41,8 +41,9 @@ DiscreteNewton tighten(const BoundaryValueProblem& problem,
   int damped = 0;
   const double scale = evaluate(path, &matrix);
   result.residual = norm(residual);
+  const auto is_solution = [&] { return result.residual <= options.tolerance * scale; };
   while (result.iterations < options.max_iterations && std::isfinite(result.residual)) {
-    result.converged = result.residual <= options.tolerance * scale;
+    result.converged = is_solution();
     if (result.converged || options.stop.reached()) break;
     ++result.iterations;
     if (!matrix.factor()) break;
@@ -69,8 +70,8 @@ DiscreteNewton tighten(const BoundaryValueProblem& problem,
     }
     std::swap(path.q, trial.q);
     std::swap(path.lambda, trial.lambda);
-    evaluate(path, &matrix);
     result.residual = reached;
+    if (!is_solution()) evaluate(path, &matrix);
   }
   fill_momenta(problem.dynamics, h, path);
   return result;

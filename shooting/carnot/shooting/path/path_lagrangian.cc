@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace carnot::internal {
 
@@ -27,16 +28,15 @@ PathLagrangian::PathLagrangian(const Dynamics& dynamics, double h, double drift)
       h_(h),
       n_(dynamics.dof),
       k_(multipliers(dynamics)),
-      x_(2 * n_ + k_),
+      lanes_(dynamics.has_transcription() ? kLanes : 1),
+      x_(static_cast<std::size_t>(2 * n_ + k_) * lanes_),
       gradient_(x_.size()),
-      hessian_(x_.size() * x_.size()),
+      hessian_(x_.size() * (2 * n_ + k_)),
+      own_x_(2 * n_ + k_),
       middle_(n_),
       velocity_(n_) {
   if (dynamics.has_transcription()) {
     values_.resize(n_ + k_ + 1);
-    packed_x_.resize(x_.size() * kLanes);
-    packed_gradient_.resize(packed_x_.size());
-    packed_hessian_.resize(hessian_.size() * kLanes);
   } else {
     terms_.emplace(dynamics, drift);
   }
@@ -57,26 +57,16 @@ int PathLagrangian::together(const Path& path, int first) const {
 
 void PathLagrangian::transcribe(const Path& path, int first, int count, bool second) {
   for (int l = 0; l < kLanes; ++l) {
-    path.gather(first + std::min(l, count - 1), k_, x_.data());
-    for (std::size_t a = 0; a < x_.size(); ++a) packed_x_[a * kLanes + l] = x_[a];
+    path.gather(first + std::min(l, count - 1), k_, own_x_.data());
+    for (std::size_t a = 0; a < own_x_.size(); ++a) x_[a * kLanes + l] = own_x_[a];
   }
   dynamics_.discrete_lagrangians(
-      h_, packed_x_, packed_gradient_, second ? packed_hessian_ : std::span<double>());
-}
-
-void PathLagrangian::unpack(int l, bool second) {
-  for (std::size_t a = 0; a < gradient_.size(); ++a) {
-    gradient_[a] = packed_gradient_[a * kLanes + l];
-  }
-  for (std::size_t a = 0; second && a < hessian_.size(); ++a) {
-    hessian_[a] = packed_hessian_[a * kLanes + l];
-  }
+      h_, x_, gradient_, second ? std::span<double>(hessian_) : std::span<double>());
 }
 
 void PathLagrangian::visit(const Path& path,
                            bool second,
                            const std::function<void(int, const Terms&)>& visit) {
-  const std::span<double> hessian = second ? hessian_ : std::span<double>();
   const auto order = second ? HamiltonianTerms::Order::kSecond : HamiltonianTerms::Order::kFirst;
   for (int first = 0; first < path.intervals;) {
     if (terms_) evaluate_middles(path, h_, first, order, *terms_);
@@ -84,15 +74,18 @@ void PathLagrangian::visit(const Path& path,
     if (!terms_) transcribe(path, first, count, second);
     for (int point = 0; point < count; ++point) {
       const int i = first + point;
-      path.gather(i, k_, x_.data());
       if (terms_) {
+        path.gather(i, k_, x_.data());
         set_middle(path, i);
         set_gradient(point, &path.lambda[i * k_]);
         if (second) set_hessian(point);
-      } else {
-        unpack(point, second);
       }
-      visit(i, {x_, gradient_, hessian});
+      const int lane = terms_ ? 0 : point;
+      const int size = 2 * n_ + k_;
+      visit(i,
+            {{&x_[lane], lanes_, size},
+             {&gradient_[lane], lanes_, size},
+             {&hessian_[lane], lanes_, second ? size * size : 0}});
     }
     first += count;
   }

@@ -12,7 +12,6 @@
 
 #include <functional>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "carnot/dynamics.h"
@@ -28,11 +27,28 @@ bool evaluate_middles(
 
 class PathLagrangian {
  public:
+  // Numbers of one interval. Those of others may stand between them.
+  class Numbers {
+   public:
+    Numbers(const double* first, int stride, int size)
+        : first_(first), stride_(stride), size_(size) {}
+    double operator[](int i) const { return first_[i * stride_]; }
+    [[nodiscard]] int size() const { return size_; }
+    // `size` of them from number i on.
+    [[nodiscard]] Numbers part(int i, int size) const {
+      return {first_ + i * stride_, stride_, size};
+    }
+
+   private:
+    const double* first_;
+    int stride_;
+    int size_;
+  };
   // The terms of one interval: F_d by x = (q0, q1, lambda).
   struct Terms {
-    std::span<const double> x;
-    std::span<const double> gradient;
-    std::span<const double> hessian;  // row-major; empty where it is not wanted
+    Numbers x;
+    Numbers gradient;
+    Numbers hessian;  // row-major; of no size where it is not wanted
   };
 
   // For intervals of length h. `drift` as in hamiltonian_terms.h, 1 where there is a transcription.
@@ -56,9 +72,8 @@ class PathLagrangian {
   void set_middle(const Path& path, int i);
   // How many intervals are evaluated at once from `first` on.
   [[nodiscard]] int together(const Path& path, int first) const;
-  // Evaluates the transcription on intervals side by side, and takes the terms of number l of them.
+  // Evaluates the transcription on intervals side by side.
   void transcribe(const Path& path, int first, int count, bool second);
-  void unpack(int l, bool second);
   void set_gradient(int point, const double* p);
   void set_hessian(int point);
 
@@ -67,16 +82,14 @@ class PathLagrangian {
   int n_;
   int k_;
   std::optional<HamiltonianTerms> terms_;  // where there is no transcription
+  int lanes_;  // intervals whose terms stand side by side: kLanes of the transcription, or one
   std::vector<double> x_;
   std::vector<double> gradient_;
   std::vector<double> hessian_;
+  std::vector<double> own_x_;  // of one interval
   std::vector<double> middle_;
   std::vector<double> velocity_;
-  // Of the transcription: of one interval, and of kLanes of them side by side.
-  std::vector<double> values_;
-  std::vector<double> packed_x_;
-  std::vector<double> packed_gradient_;
-  std::vector<double> packed_hessian_;
+  std::vector<double> values_;  // of the transcription at a middle
 };
 
 }  // namespace carnot::internal

@@ -228,7 +228,6 @@ Relaxation relax(const BoundaryValueProblem& problem,
   result.action = state.action;
   result.violation = state.violation;
   result.feasible = state.violation < options.feasibility;
-  fill_momenta(dynamics, h, path);
   return result;
 }
 

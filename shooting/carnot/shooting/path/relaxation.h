@@ -37,8 +37,8 @@ struct Relaxation {
   int iterations = 0;
 };
 
-// Relaxes `path` in place and fills its momenta. What is fixed of the ends stays so. Starts from
-// the multipliers of the path, or from zeros where it has none.
+// Relaxes `path` in place, without its momenta. What is fixed of the ends stays so. Starts from the
+// multipliers of the path, or from zeros where it has none.
 Relaxation relax(const BoundaryValueProblem& problem, const RelaxationOptions& options, Path& path);
 
 }  // namespace carnot::internal
