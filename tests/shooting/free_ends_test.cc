@@ -118,6 +118,30 @@ TEST(FreeEnds, AreTheSameByEveryMinimiserAndFromBothSides) {
   EXPECT_NEAR(best(one).action, best(reversed).action, kSolved * by_newton.action);
 }
 
+// Its momentum stays zero along the whole path. Driven backwards the same path has the same label.
+TEST(FreeEnds, AreLabelledWhereTheStartIsFreeInWhatTheSceneDoesNotDependOn) {
+  const struct {
+    BoundaryValueProblem forth;
+    std::vector<int> free;
+  } cases[] = {{test::heisenberg_group({1, 0, 0}), {2}},
+               {test::vehicle({0, 0, 0, 0}, {1, 1, 0, 0}), {0}},
+               {test::vehicle({0, 0, 0, 0}, {1, 1, 0, 0}), {1}},
+               {test::unicycle({0, 0, 0}, {1, 1, 0.5}), {0}},
+               {test::martinet({0.5, 0.5, 0.5}), {2}}};
+  for (const auto& [forth, free] : cases) {
+    SCOPED_TRACE(forth.dynamics.info.name);
+    const Geodesic start = best(with_free(forth, free, {}));
+    BoundaryValueProblem back = forth;
+    std::swap(back.from, back.to);
+    const Geodesic target = best(with_free(back, {}, free));
+    EXPECT_NEAR(start.action, target.action, kSolved * target.action);
+    EXPECT_EQ(target.label, Label::kLocallyMinimal);
+    EXPECT_EQ(start.label, target.label);
+    EXPECT_EQ(start.morse_index, target.morse_index);
+    EXPECT_EQ(start.abnormal, target.abnormal);
+  }
+}
+
 TEST(FreeEnds, NeverCostMoreThanFixedOnes) {
   constexpr int kTargets = 100;
   std::mt19937_64 random(1);

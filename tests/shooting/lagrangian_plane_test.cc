@@ -89,5 +89,23 @@ TEST(LagrangianPlane, GraphsShowTheKernelOfX) {
   EXPECT_TRUE(turned.balance.allFinite());
 }
 
+// Infinite in one direction, the graph is what it is in the others.
+TEST(LagrangianPlane, GraphsPassOverTheKernelOfP) {
+  for (const double angle : {0.0, 0.3}) {
+    const MatrixXd turn = rotation(angle);
+    MatrixXd plane(4, 2);  // in other coordinates, in which neither X nor P is diagonal
+    plane.topRows(2) = turn * plane_of(kPi / 2, 0.8).topRows(2);
+    plane.bottomRows(2) = turn * plane_of(kPi / 2, 0.8).bottomRows(2);
+    const Graph graph = graph_of(plane * rotation(0.7));
+    EXPECT_EQ(graph.kernel, 0);
+    ASSERT_TRUE(graph.balance.allFinite());
+    const MatrixXd squared = graph.balance * graph.balance;
+    EXPECT_LE((squared - std::tan(0.8) * MatrixXd::Identity(2, 2)).norm(), kRounded);
+  }
+  const Graph both = graph_of(plane_of(kPi / 2, 0));
+  EXPECT_EQ(both.kernel, 1);
+  EXPECT_TRUE(both.balance.allFinite());
+}
+
 }  // namespace
 }  // namespace carnot::internal::lagrangian_plane_test

@@ -45,12 +45,38 @@ Phases phases_of(const MatrixXd& plane) {
   return phases;
 }
 
+namespace {
+
+// X P^-1 of a plane, and in how many directions it is infinite; the matrix is zero there.
+struct Ratio {
+  MatrixXd matrix;
+  int infinite = 0;
+};
+
+// Where P b = 0, X b is orthogonal to what P spans, for the plane is Lagrangian. So X P^-1 is
+// infinite along X b, and elsewhere it is X P^+ on the span of P.
+Ratio ratio_of(const MatrixXd& x, const MatrixXd& p) {
+  const MatrixXd ratio = product(x, lu_inverse(p));
+  const bool regular = ratio.allFinite() && ratio.cwiseAbs().maxCoeff() < 1 / kRankRoundOff;
+  if (regular) return {ratio};
+  const RightSingular right = right_singular(p);
+  const auto rank = (right.values.array() > kRankRoundOff * right.values[0]).count();
+  const MatrixXd kept = right.vectors.leftCols(rank);
+  const VectorXd sizes = right.values.head(rank);
+  const MatrixXd span = product(p, kept) * sizes.cwiseInverse().asDiagonal();
+  const MatrixXd image = product(x, kept) * sizes.cwiseInverse().asDiagonal();
+  const MatrixXd projector = product(span, span.transpose());
+  return {product(projector, product(image, span.transpose())), static_cast<int>(x.cols() - rank)};
+}
+
+}  // namespace
+
 Graph graph_of(const MatrixXd& plane) {
   const auto n = plane.cols();
-  const MatrixXd ratio = product(plane.topRows(n), lu_inverse(plane.bottomRows(n)));
-  const SymmetricEigen eigen = symmetric_eigen(0.5 * (ratio + ratio.transpose()));
+  const Ratio ratio = ratio_of(plane.topRows(n), plane.bottomRows(n));
+  const SymmetricEigen eigen = symmetric_eigen(0.5 * (ratio.matrix + ratio.matrix.transpose()));
   VectorXd root = eigen.values.cwiseAbs();
-  const double largest = root.maxCoeff();
+  const double largest = root.maxCoeff() > 0 ? root.maxCoeff() : 1;
   Graph graph;
   for (double& value : root) {
     if (value <= kRankRoundOff * largest) {
@@ -58,6 +84,7 @@ Graph graph_of(const MatrixXd& plane) {
       value = largest;
     }
   }
+  graph.kernel -= ratio.infinite;
   graph.regularity = root.minCoeff() / largest;
   root = root.cwiseSqrt();
   graph.balance = product(eigen.vectors * root.asDiagonal(), eigen.vectors.transpose());
