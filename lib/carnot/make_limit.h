@@ -114,6 +114,7 @@ Limit make_disc(const Scene& scene,
       },
       0.5 * radius);
   limit.outline = circle_outline(centre, radius);
+  limit.radius = radius;
   return limit;
 }
 

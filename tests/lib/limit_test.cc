@@ -129,6 +129,11 @@ TEST(Limit, OfADiscIsADistanceAtItsBorder) {
     const std::vector<double> q{1 + r * std::cos(0.3), 2 + r * std::sin(0.3), 0.9, 0};
     EXPECT_NEAR(points[1].slack(points[1].value(q.data(), nullptr, nullptr)), beyond, 1e-9);
   }
+  // What it says of a path is the distance itself, far away and at the centre, too.
+  for (const double r : {0.0, 0.2, 0.5, 3.0}) {
+    const std::vector<double> q{1 + r, 2, 0, 0};
+    EXPECT_NEAR(points[1].slack(points[1].value(q.data(), nullptr, nullptr)), r - 0.5, 1e-15);
+  }
   // Without points it is (x, y) that keeps away.
   EXPECT_EQ(limits_of("disc (1, 2), 0.5\n").at(0).name, "disc 1, (x, y)");
 }

@@ -137,6 +137,7 @@ Limit limit_of(const SceneSource& scene, const LimitSource& source) {
   if (source.disc) {
     const auto& [x, y, radius] = *source.disc;
     limit.outline = circle_outline({x, y}, radius);
+    limit.radius = radius;
   }
   limit.value = [of = numbers(scene, all), n](const double* q, double* gradient, double* hessian) {
     const std::vector<double> values = of.at(q);

@@ -32,8 +32,16 @@ struct Limit {
   // std::invalid_argument where velocities cannot be kept so.
   std::function<Dynamics()> held{};
 
-  // How far from the nearer bound the value is; negative beyond it.
-  [[nodiscard]] double slack(double of) const { return std::min(of - lower, upper - of); }
+  // Of a disc, whose value is the square of the distance to the centre over twice this; 0: of any
+  // other function.
+  double radius = 0;
+
+  // How far from the nearer bound the value is; negative beyond it. Of a disc it is the distance to
+  // its edge.
+  [[nodiscard]] double slack(double of) const {
+    if (radius > 0) return std::sqrt(2 * radius * of) - std::sqrt(2 * radius * lower);
+    return std::min(of - lower, upper - of);
+  }
 };
 
 // The corners of a circle that looks round, for an outline.
