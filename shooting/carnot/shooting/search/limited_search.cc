@@ -220,9 +220,12 @@ void LimitedSearch::finish_candidates(int threads, LimitedAnswer& answer) {
   if (!options_.all && open.size() > wanted + kMostTried) open.resize(wanted + kMostTried);
   std::size_t next = 0;
   while (next < open.size() && (next < wanted || geodesics.size() < count)) {
-    // The least ones are finished in any case: they are what the time was spent for.
-    if (stop_.reached() && (next > 0 || stop_.asked())) return;
-    const std::size_t round = std::min({wanted, kAtOnce, open.size() - next});
+    // The least ones are finished in any case: they are what the time was spent for. Once it is up
+    // they are as many as are wanted.
+    const bool late = stop_.reached();
+    if (late && (next > 0 || stop_.asked())) return;
+    const std::size_t at_once = late ? count : kAtOnce;
+    const std::size_t round = std::min({wanted, at_once, open.size() - next});
     std::vector<std::optional<LimitedExtremal>> finished(round);
     parallel_for(static_cast<int>(round), threads, [&](int i) {
       finished[i] = finish_.finish(*open[next + i], stop_);
