@@ -82,6 +82,7 @@ Json flow_json(const FlowRequest& request,
   json["p"] = end.p;
   json["lambda"] = end.lambda;
   json["hamiltonian"] = end.hamiltonian;
+  json["action"] = outcome.summary.action;
   json["energy_drift"] = outcome.summary.energy_drift;
   if (!run.dynamics.autonomous) {
     json["hamiltonian_conserved"] = false;

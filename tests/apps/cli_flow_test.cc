@@ -40,6 +40,7 @@ TEST(FlowCommand, DrivesStraightExactly) {
                           "p",
                           "lambda",
                           "hamiltonian",
+                          "action",
                           "energy_drift",
                           "constraint_error",
                           "evaluations",
@@ -57,6 +58,7 @@ TEST(FlowCommand, DrivesStraightExactly) {
   EXPECT_EQ(json["message"], "");
   EXPECT_EQ(json["time_reached"], 5);
   EXPECT_EQ(json["hamiltonian"], 0.5);
+  EXPECT_NEAR(json["action"].get<double>(), 2.5, 1e-14);
   const std::vector<double> end{5, 0, 0, 0};
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(json["q"][i].get<double>(), end[i], 1e-14);
   EXPECT_EQ(json["lambda"].size(), 2);
