@@ -111,8 +111,26 @@ TEST(StoppingPolicy, AnglesTakeMoreStartsAndMoreHits) {
   EXPECT_FALSE(policy.may_end({31, 31, 0, 31}));
   EXPECT_TRUE(policy.may_end({32, 32, 0, 0}));
   EXPECT_TRUE(policy.ends({32, 32, 0, 32}, alone));
-  EXPECT_FALSE(policy.ends({200, 200, 0, 200}, {{99, 200}, 1, 50}));
-  EXPECT_TRUE(policy.ends({200, 200, 0, 200}, {{100, 0}, 1, 50}));
+  EXPECT_FALSE(policy.ends({300, 300, 0, 300}, {{199, 400}, 1, 50}));
+  EXPECT_TRUE(policy.ends({300, 300, 0, 300}, {{200, 0}, 1, 50}));
+  EXPECT_TRUE(policy.ends({300, 300, 0, 300}, {{199, 401}, 1, 50}));
+  // None ends before 32, so that no round has to be short.
+  for (const int starts : {0, 8, 16, 24, 32}) EXPECT_EQ(policy.round({starts, starts}), 8);
+}
+
+// One geodesic is worth twice as many starts there. What was asked for stays so.
+TEST(StoppingPolicy, AnglesHaveAHigherLimit) {
+  for (const int count : {1, 2}) {
+    StoppingPolicy policy(options_for(count), true, false);
+    const int before = policy.left({});
+    policy.plan_for_angles();
+    EXPECT_EQ(policy.left({}), count == 1 ? 2 * before : before);
+  }
+  GeodesicOptions given = options_for(1);
+  given.starts = 50;
+  StoppingPolicy policy(given, true, false);
+  policy.plan_for_angles();
+  EXPECT_EQ(policy.left({}), 50);
 }
 
 // Crossings are made of what is known: that they find it again does not say that nothing is missed.

@@ -17,8 +17,8 @@ namespace {
 // of trailer2, 150 of engel and of martinet, 100 of plate-ball-quaternion and 60 of bicycle; 490 of
 // all with positions up to 15.
 
-// Starts between two looks at the list. Where one geodesic is wanted, rounds between 8 and 16
-// starts are half as long: the looks are after 8, 12, 16, 24, 32, ... starts.
+// Starts between two looks at the list. Where one geodesic is wanted, rounds are half as long where
+// a search may end within one: the looks are after 8, 12, 16, 24, 32, ... starts.
 constexpr int kRound = 8;
 // `starts`: 16 starts miss with 1 % what one in four leads to, and with 12 % what one in eight
 // does. With 12, 9 targets are missed; with 24 as many as with 16, in the same time. `easy`: 12
@@ -31,11 +31,10 @@ constexpr Caution kCaution{.easy = 12, .starts = 16, .sure = 20, .with_crossings
 // Where every coordinate is an angle. There are many ways round, and one of them may draw most
 // starts though its action is not the least. Of 1,200 answers for falling-cat (200 random targets,
 // six seeds) 31 are not the least that any run knows with kCaution, 20 of them after that had been
-// hit twenty times; with this 9, in 1.30 of the time. Of the answers of two of these seeds 12 are
-// missed with kCaution, 7 with `sure` and `with_crossings` at 60 and 180 alone, in 1.2 of the time,
-// 2 with this, and 2 with `easy` and `starts` at 80, in 1.1 times the time of this. Of 600 answers
-// for satellite none changes, in 1.09 of the time.
-constexpr Caution kCautionOfAngles{.easy = 32, .starts = 32, .sure = 100, .with_crossings = 300};
+// hit twenty times; 9 with half of these hits and the limit of other scenes, in 1.30 of the time;
+// and 1 with this, in twice the time of these. Of 600 answers for satellite none changes where 32
+// starts and half of these hits are asked for, in 1.09 of the time.
+constexpr Caution kCautionOfAngles{.easy = 32, .starts = 32, .sure = 200, .with_crossings = 600};
 // The least number by the ways to a near target, which take turns every eight starts
 // (NearTarget::way): 24 starts are twelve that go straight and six by each of two dilations. With
 // 16 near targets take 0.89 of the time, with 32 1.15, and nothing changes on these 200.
@@ -45,6 +44,10 @@ constexpr int kMinNear = 24;
 // trailer2 and one each of trailer1 and vehicle are missed and 7 of bicycle are not solved, in 0.59
 // of the time.
 constexpr int kMaxStarts = 480;
+// The same where every coordinate is an angle and one geodesic is wanted. Nearly half of the random
+// targets of falling-cat get that far. Of their 1,200 answers 2 are missed with 720, and 2 with
+// 1,920 and half of the hits above.
+constexpr int kMaxStartsOfAngles = 960;
 // The same where a target is near. Only targets so near that round-off parts their extremals into
 // many get that far, and a start takes long there: a vehicle to (0, 1e-10, 0, 0) takes 5 s with
 // 480.
@@ -115,7 +118,10 @@ void StoppingPolicy::plan_for(int scaled, int actuated) {
   if (!given_) limit_ = std::min(limit_, scaled + actuated);
 }
 
-void StoppingPolicy::plan_for_angles() { caution_ = kCautionOfAngles; }
+void StoppingPolicy::plan_for_angles() {
+  caution_ = kCautionOfAngles;
+  if (!given_ && !wants_more_) limit_ = kMaxStartsOfAngles;
+}
 
 int StoppingPolicy::left(const SearchTally& tally) const {
   const int in_vain = given_ ? 0 : std::min(tally.blocked, kMaxBlocked * limit_);
@@ -124,8 +130,8 @@ int StoppingPolicy::left(const SearchTally& tally) const {
 }
 
 int StoppingPolicy::round(const SearchTally& tally) const {
-  const bool nearly = !wants_more_ && 0 < tally.starts && tally.starts < caution_.starts;
-  return std::min(nearly ? kRound / 2 : kRound, left(tally));
+  const bool nearly = tally.starts + kRound > caution_.easy && tally.starts < caution_.starts;
+  return std::min(nearly && !wants_more_ ? kRound / 2 : kRound, left(tally));
 }
 
 double StoppingPolicy::share(const SearchTally& tally) const {

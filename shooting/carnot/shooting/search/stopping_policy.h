@@ -39,7 +39,7 @@ class StoppingPolicy {
 
   // For starts of drift: so many of scaled drift, which are all tried, and at most so many more.
   void plan_for(int scaled, int actuated);
-  // For configurations of angles only, which take more caution.
+  // For configurations of angles only, which take more caution and more starts.
   void plan_for_angles();
 
   // More than the extremal of least action.
