@@ -72,7 +72,7 @@ class Planes {
            carry(from, t, std::move(step), to) &&
            (follows(from, to) || advance_by_halves(from, t, to, halvings));
   }
-  // The same from the begin of step i to its end.
+  // The same from the beginning of step i to its end.
   [[nodiscard]] bool advance(const Frame& from, const JoinedSteps& steps, long i, Frame& to) const {
     return take(from, steps, i, to) &&
            (follows(from, to) || advance_by_halves(from, steps.end(i), to, kMostHalvings));

@@ -147,8 +147,6 @@ std::optional<VectorXd> kernel_line(const MatrixXd& rows, double full_rank) {
   return VectorXd(times_q(qr, VectorXd::Unit(size, size - 1)));
 }
 
-// Jacobi's method, row by row: small eigenvalues keep their digits beside large ones. Some ten
-// sweeps; ends where the entries beside the diagonal are round-off of those on it.
 double spectral_radius(const MatrixXd& a) {
   const double scale = a.norm();
   if (!(scale > 0)) return scale;  // zero, or not a number
@@ -187,6 +185,8 @@ int count_below(const SmallMatrix& a, double bound) {
   return count;
 }
 
+// Jacobi's method, row by row: small eigenvalues keep their digits beside large ones. Some ten
+// sweeps; ends where the entries beside the diagonal are round-off of those on it.
 SymmetricEigen symmetric_eigen(const MatrixXd& a) {
   constexpr double kEps = std::numeric_limits<double>::epsilon();
   constexpr int kMostSweeps = 60;
