@@ -53,6 +53,36 @@ double regulator_action(double time) {
   return -0.5 * p0.dot(q0);
 }
 
+// The vehicle, written so that it is searched like a scene with drift: as a Lagrangian, with a
+// potential of the time alone, and on a belt that takes it along by 1.
+TEST(DriftSearch, ParksACarHoweverItIsWritten) {
+  const std::string coordinates = "coordinates x, y [length], theta, phi [angle]\n";
+  const std::string energy = "(x'^2 + y'^2 + theta'^2 + phi'^2) / 2\n";
+  const std::string wheels =
+      "0 = x' sin(phi) - y' cos(phi)\n0 = x' sin(theta) - y' cos(theta) + theta'\n";
+  const struct {
+    std::string text;
+    double belt = 0;
+    double more = 0;  // action, that of the potential
+  } cars[] = {{coordinates + "lagrangian = " + energy + wheels},
+              {coordinates + "kinetic = " + energy + "potential = t / 2\n" + wheels, 0, -0.25},
+              {coordinates + "controls v, w\nx' = v cos(phi) + 1\ny' = v sin(phi)\n"
+                             "theta' = v sin(phi - theta)\nphi' = w\n"
+                             "cost = (v^2 + (v sin(phi - theta))^2 + w^2) / 2\n",
+               1}};
+  constexpr double kSolved = 1e-9;
+  for (const std::vector<double>& to : {std::vector<double>{0, 0.5, 0, 0}, {1, 1, 0, 0}}) {
+    const double least = best(test::vehicle({0, 0, 0, 0}, to)).action;
+    for (const auto& car : cars) {
+      SCOPED_TRACE(car.text);
+      std::vector<double> carried = to;
+      carried[0] += car.belt;
+      const Geodesic found = best({test::from_text(car.text), {0, 0, 0, 0}, carried});
+      EXPECT_NEAR(found.action, least + car.more, kSolved * least);
+    }
+  }
+}
+
 TEST(DriftSearch, SolvesLinearQuadraticProblemsOnLongTimes) {
   constexpr double kRoundOff = 1e-12;
   for (const double time : {1.0, 10.0}) {

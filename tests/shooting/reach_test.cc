@@ -21,6 +21,18 @@ TEST(Reach, IsTheGramianOfADoubleIntegrator) {
   }
 }
 
+// A unicycle cannot move sideways, but it can where it has turned: on the mean by sin^2.
+TEST(Reach, SeesWhatOtherPointsCanMove) {
+  const Dynamics unicycle = test::from_text(
+      "coordinates x, y [length], theta [angle]\n"
+      "lagrangian = (x'^2 + y'^2 + theta'^2) / 2\n0 = x' sin(theta) - y' cos(theta)\n");
+  constexpr double kSampled = 0.1;  // by 64 points
+  const Reach reach = reach_of({unicycle, {0, 0, 0}, {0, 1, 0}});
+  EXPECT_NEAR(reach.sizes[0], 1, kGrid);
+  EXPECT_NEAR(reach.sizes[1], 0.5, kSampled);
+  EXPECT_NEAR(reach.sizes[2], 1, kGrid);
+}
+
 TEST(Reach, CountsTheTurnsOfAnOscillator) {
   const Dynamics oscillator =
       test::from_text("coordinates x, v\ncontrols u\nx' = 3 v\nv' = u - 3 x\ncost = u^2 / 2\n");

@@ -15,7 +15,8 @@ namespace carnot::internal {
 struct Reach {
   std::vector<double> rest;  // the momentum of the drift, zero or that of the straight line
   // diag(W) / t after one time scale of the drift: what H_pp would be of controls on each
-  // coordinate that move it as far.
+  // coordinate that move it as far. Of a coordinate that they do not move from there, the mean of
+  // H_pp around the straight line.
   std::vector<double> sizes;
   // The integral of the fastest rate of the drift over [0, T]: the spectral radius of A.
   double turns = 0;
