@@ -7,8 +7,8 @@
 
 namespace carnot::internal {
 
-// The largest |value(q)| along the nodes of a path, for each extreme of the scene: the top of the
-// parabola through the largest one and its neighbours.
+// The largest |value(q)| along a smooth path, for each extreme of the scene, at and between equally
+// spaced nodes: of the polynomial through the nodes around the largest.
 void set_extremes(const BoundaryValueProblem& problem,
                   const std::vector<std::vector<double>>& nodes,
                   Geodesic& geodesic);
