@@ -125,6 +125,25 @@ TEST(DriftSearch, FindsTheLeastActionWhateverTheSeed) {
   }
 }
 
+// Between such states of a cart-pole 96 starts near the straight line find nothing: the cart has to
+// go back and forth by more than it goes ahead.
+TEST(DriftSearch, FindsWaysFarFromTheStraightLine) {
+  constexpr double kRoundOff = 1e-9;  // relative
+  struct Case {
+    std::vector<double> from, to;
+    double time;
+  };
+  const std::vector<Case> cases{
+      {{-0.3557, -0.7644, -0.3830, 0.6323}, {-0.3193, 0.1632, 0.2778, -0.2552}, 2},
+      {{-0.2733, 0.0353, -0.2889, -0.9420}, {-0.4721, -0.4412, -0.4817, 0.3850}, 1},
+      {{-0.2406, -0.1620, -0.7379, 0.8200}, {-0.1462, -0.0837, 0.1667, 0.8086}, 1}};
+  for (const Case& one : cases) {
+    const BoundaryValueProblem problem{test::cart_pole().dynamics, one.from, one.to, one.time};
+    const double action = best(problem, 0).action;
+    EXPECT_NEAR(best(problem, 1).action, action, kRoundOff * action);
+  }
+}
+
 TEST(DriftSearch, NeedsBothFamilies) {
   // Scaled drift finds the least of the transfer, and nothing that the oscillator needs.
   const BoundaryValueProblem transfer = test::kepler(20);

@@ -21,6 +21,35 @@ constexpr double kSlowest = 0.2;  // scales of the drift
 constexpr double kFastest = 1.8;
 constexpr int kWiggles = 3;
 
+// How a start of the second family is made.
+struct Recipe {
+  double least_relaxed;
+  double most_relaxed;
+  double most_wiggle;  // of the way that the action of the straight line would go
+  int rounds;          // of the method of multipliers
+  int iterations;      // of each round
+};
+
+// Measured on van der Pol's oscillator, swing-ups of a pendulum and of a cart-pole and the flip of
+// a quadrotor: over five decades of mu each of them has a range in which nearly all starts
+// converge.
+constexpr Recipe kQuick{1e-3, 1e2, 1, 3, 15};
+// On manifolds (skate-on-sphere, rod-skate) nearly all starts converge from a relaxation of 0.3 on,
+// and few below.
+constexpr Recipe kQuickOnManifold{0.3, 1e2, 1, 3, 15};
+// Where quick starts find too little, paths have to go far from the straight line, and much work
+// pays for each. Measured on 48 problems between random states of a cart-pole with two seeds each:
+// 96 quick starts find nothing in 40 of the 96 searches; with 80 thorough ones after 16 quick ones
+// it is 10 if these have 8 rounds, and with 128 of 12 rounds it is 3, in 1.1 and 1.7 of the time.
+// Five times as wide finds more that is not the least.
+constexpr Recipe kThorough{1e-3, 0.1, 3, 12, 60};
+constexpr int kQuickStarts = 16;  // easy problems have enough of them
+
+Recipe recipe_of(const Dynamics& dynamics, int i) {
+  if (dynamics.forced > 0) return kQuickOnManifold;
+  return i < kQuickStarts ? kQuick : kThorough;
+}
+
 Path path_of(int dof, int intervals) {
   Path path;
   path.intervals = intervals;
@@ -167,7 +196,7 @@ void DriftStarts::scan_scales() {
 int DriftStarts::actuated() const {
   constexpr int kIntervals = 8192;  // of all of them together
   constexpr int kFewest = 12;
-  constexpr int kMost = 96;
+  constexpr int kMost = 144;
   return std::clamp(kIntervals / intervals_, kFewest, kMost);
 }
 
@@ -210,20 +239,11 @@ RelaxedStart DriftStarts::scaled_start(double d, int intervals, const Stop& stop
 }
 
 Path DriftStarts::random_path(int i, int intervals, double& relaxation) const {
-  // Measured on van der Pol's oscillator, swing-ups of a pendulum and of a cart-pole and the flip
-  // of a quadrotor: over five decades of mu each of them has a range in which nearly all starts
-  // converge.
-  constexpr double kLeastRelaxed = 1e-3;
-  // On manifolds (skate-on-sphere, rod-skate) nearly all starts converge from here on, and few
-  // below.
-  constexpr double kLeastOnManifold = 0.3;
-  constexpr double kMostRelaxed = 1e2;
+  const Recipe recipe = recipe_of(problem_.dynamics, i);
   constexpr double kLeastWiggle = 0.02;
-  constexpr double kMostWiggle = 1;
   const int n = problem_.dynamics.dof;
   Draws draws(seed_, i);
-  const double least = problem_.dynamics.forced > 0 ? kLeastOnManifold : kLeastRelaxed;
-  relaxation = draws.log_uniform(least, kMostRelaxed);
+  relaxation = draws.log_uniform(recipe.least_relaxed, recipe.most_relaxed);
   const double way = std::sqrt(2 * action_ * problem_.time);
   std::vector<double> ways;  // by coordinate
   for (const double s : reach_.sizes) ways.push_back(way * std::sqrt(s));
@@ -231,7 +251,7 @@ Path DriftStarts::random_path(int i, int intervals, double& relaxation) const {
   const BoundaryValueProblem problem =
       moves ? with_ends_moved(problem_, ways, draws.generator()) : problem_;
   Path path = i % 4 >= 2 ? blended_drift(problem, intervals, draws) : straight(problem, intervals);
-  const double size = draws.log_uniform(kLeastWiggle, kMostWiggle) * way;
+  const double size = draws.log_uniform(kLeastWiggle, recipe.most_wiggle) * way;
   for (int m = 1; m <= kWiggles && i > 0; ++m) {  // the first is the straight line itself
     for (int j = 0; j < n; ++j) {
       const double amplitude = size * std::sqrt(reach_.sizes[j]) * draws.normal() / m;
@@ -246,16 +266,16 @@ Path DriftStarts::random_path(int i, int intervals, double& relaxation) const {
 }
 
 RelaxedStart DriftStarts::actuated_start(int i, int intervals, const Stop& stop) const {
-  constexpr int kRounds = 3;  // of the method of multipliers
+  const Recipe recipe = recipe_of(problem_.dynamics, i);
   ActionDescentOptions options;
   options.sizes = reach_.sizes;
   options.rest = reach_.rest;
   RelaxedStart result;
   result.path = random_path(i, intervals, options.relaxation);
   options.stop = stop;
-  options.max_iterations = 15;
+  options.max_iterations = recipe.iterations;
   options.tolerance = 1e-3;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < recipe.rounds; ++round) {
     (void)reduce_action(problem_, options, result.path);
     options.centre = result.path.lambda;
   }
