@@ -18,8 +18,8 @@ an extremal or a mirror partner, and "missed_estimate" is Chao's estimate of how
 found, or null where starts say too little.
 On failure "reason" is a code, in the order of how far the best attempt came:
 no-start-converged, singular-coordinates (most paths ran into one), guess-failed, not-refined,
-flow-failed, not-joined, not-verified, beyond-double (round-off exceeds the tolerance), too-long (for
---max-length); "message" says more and what to try.
+flow-failed, not-joined, not-verified, beyond-double (round-off exceeds the tolerance),
+method-too-coarse (its error does), too-long (for --max-length); "message" says more and what to try.
 The label "abnormal" is of a path that the constraints alone make an extremal: no momentum leads along
 it, and "p0" is null.
 A coordinate of an end that is * is free: its momentum vanishes there. What was found is

@@ -79,11 +79,11 @@ TEST(Stress, CountsReasons) {
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   const auto json = outcome.json();
   EXPECT_EQ(json["solved"], 0);
-  EXPECT_EQ(json["reasons"].dump(), R"({"not-verified":2})");
+  EXPECT_EQ(json["reasons"].dump(), R"({"method-too-coarse":2})");
   ASSERT_EQ(json["failures"].size(), 2);
   for (const auto& failure : json["failures"]) {
-    EXPECT_EQ(failure["reason"], "not-verified");
-    EXPECT_THAT(failure["message"].get<std::string>(), HasSubstr("try a larger --tolerance"));
+    EXPECT_EQ(failure["reason"], "method-too-coarse");
+    EXPECT_THAT(failure["message"].get<std::string>(), HasSubstr("try a --method of higher order"));
   }
 }
 

@@ -147,11 +147,30 @@ TEST(Failure, NotJoined) {
 }
 
 // The midpoint rule does not reach the tolerance with the steps that verification affords.
-TEST(Failure, NotVerified) {
+// The midpoint rule is good to 1e-5 with 4096 steps. Twenty starts say so, not a thousand.
+TEST(Failure, MethodTooCoarse) {
+  constexpr int kFew = 40;
   const BoundaryValueProblem problem(test::vehicle_midpoint(), {0, 0, 0, 0}, {0, 1, 0, 0});
   GeodesicOptions options;
+  const GeodesicReport report = find_geodesics(problem, options);
+  EXPECT_EQ(report.reason, Reason::kMethodTooCoarse);
+  EXPECT_NE(report.message.find("higher order"), std::string::npos) << report.message;
+  EXPECT_LE(report.starts, kFew);
   options.guess = kSidewaysP0;
-  EXPECT_EQ(reason_of(problem, options), Reason::kNotVerified);
+  EXPECT_EQ(reason_of(problem, options), Reason::kMethodTooCoarse);
+  options = {};
+  options.tolerance = 1e-4;
+  EXPECT_EQ(find_geodesics(problem, options).status, GeodesicStatus::kConverged);
+}
+
+// The same where momenta are drawn: some lead to extremals that round-off keeps from their ends.
+TEST(Failure, MethodTooCoarseOnAManifold) {
+  constexpr int kFew = 64;
+  const BoundaryValueProblem problem{test::rod_skate_rattle(), {0, 0, 1, 0}, {1, 0.2, 2, 0.2}};
+  const GeodesicReport report = find_geodesics(problem);
+  EXPECT_EQ(report.reason, Reason::kMethodTooCoarse);
+  EXPECT_NE(report.message.find("higher order"), std::string::npos) << report.message;
+  EXPECT_LE(report.starts, kFew);
 }
 
 // Round-off is larger than the tolerance; or leaves no digit of the momentum.

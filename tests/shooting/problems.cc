@@ -154,4 +154,6 @@ Dynamics vehicle_with_alpha(double alpha) { return dynamics("vehicle", {{"alpha"
 
 Dynamics vehicle_midpoint() { return dynamics("vehicle", {}, "midpoint"); }
 
+Dynamics rod_skate_rattle() { return dynamics("rod-skate", {}, "rattle"); }
+
 }  // namespace carnot::test

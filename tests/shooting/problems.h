@@ -50,4 +50,7 @@ Dynamics vehicle_with_alpha(double alpha);
 // The midpoint rule on the vehicle.
 Dynamics vehicle_midpoint();
 
+// RATTLE on two masses that a rod joins.
+Dynamics rod_skate_rattle();
+
 }  // namespace carnot::test

@@ -30,6 +30,8 @@ const char* name_of(Reason reason) {
       return "not-verified";
     case Reason::kBeyondDouble:
       return "beyond-double";
+    case Reason::kMethodTooCoarse:
+      return "method-too-coarse";
     case Reason::kTooLong:
       return "too-long";
     case Reason::kOnlyAbnormal:

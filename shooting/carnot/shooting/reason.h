@@ -18,6 +18,7 @@ enum class Reason {
   kNotJoined,            // shooting from discrete extremals did not converge
   kNotVerified,          // an independent integration misses the target, by more than round-off
   kBeyondDouble,         // round-off is larger than the tolerance, or than the target is far
+  kMethodTooCoarse,      // it misses by the error of the method, with the most steps, too
   kTooLong,              // all that were found are longer than max_length
   kOnlyAbnormal,         // nothing but a strictly abnormal curve, which has no momentum
 };

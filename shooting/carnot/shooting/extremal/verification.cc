@@ -86,6 +86,30 @@ long enough_steps(const BoundaryValueProblem& problem,
   return steps;
 }
 
+// By how much halving the step moves the configuration at the end of a segment; infinite where a
+// flow fails.
+double moved_by_halving(const BoundaryValueProblem& problem, const Knots& knots, long steps) {
+  double moved = 0;
+  for (int i = 0; i < knots.segments; ++i) {
+    std::vector<double> coarse(knots.at(i), knots.at(i) + 2 * knots.dof);
+    std::vector<double> fine = coarse;
+    const auto run = [&](long count, std::vector<double>& z) {
+      return problem.dynamics.flow(knot_plan(problem, knots.segments, i, count), z).completed();
+    };
+    if (!run(steps, coarse) || !run(2 * steps, fine))
+      return std::numeric_limits<double>::infinity();
+    moved = maximum(moved, largest_difference(coarse.data(), fine.data(), knots.dof));
+  }
+  return moved;
+}
+
+// Whether the method errs by more than is allowed with the most steps. Its error still falls with
+// the step then, which round-off does not.
+bool is_too_coarse(const BoundaryValueProblem& problem, const Knots& knots, double allowed) {
+  const double moved = moved_by_halving(problem, knots, kMaxSteps);
+  return moved > allowed && moved < 0.5 * moved_by_halving(problem, knots, kMaxSteps / 2);
+}
+
 // What is asked of an extremal.
 struct Demand {
   double aim;      // of Newton's method, at the end
@@ -188,9 +212,13 @@ Outcome verify(const BoundaryValueProblem& problem,
   Extremal extremal;
   if (!check_single(problem, demand, steps, start_unknowns(problem, knots.at(0)), extremal)) {
     if (stop.reached()) return {};
-    const Reason reason =
+    Reason reason =
         check_knots(problem, demand, steps, tolerance, stop, std::move(knots), extremal);
     if (stop.reached()) return {};
+    if (reason == Reason::kNotVerified && steps >= kMaxSteps &&
+        is_too_coarse(problem, extremal.knots, demand.allowed)) {
+      reason = Reason::kMethodTooCoarse;
+    }
     if (reason != Reason::kNone) return {std::nullopt, reason};
   }
   if (!measure(problem, 2 * steps, extremal)) return {std::nullopt, Reason::kFlowFailed};

@@ -20,7 +20,7 @@ enum class Fate {
   kPending,   // it waits to be polished,
   kExtremal,  // it became an extremal of the list,
   kArtefact,  // polishing it gave nothing,
-  kTooRough,  // there is an extremal that round-off keeps from its end,
+  kTooRough,  // there is an extremal that round-off or the method's error keeps from its end,
   kGivenUp,   // its action is clearly more than the least and only that is wanted,
   kMerged     // or on a finer grid it is another one, which has its paths and hits
 };

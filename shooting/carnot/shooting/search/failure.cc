@@ -89,6 +89,9 @@ std::string fate(Reason furthest) {
       return "discrete extremals were found but shooting from them did not converge";
     case Reason::kBeyondDouble:
       return "discrete extremals were found but none that double precision can verify";
+    case Reason::kMethodTooCoarse:
+      return "extremals were found but the method errs by more than the tolerance, even in "
+             "thousands of steps";
     default:
       return "discrete extremals were found but none could be verified";
   }
@@ -115,6 +118,8 @@ bool in_the_way(const BoundaryValueProblem& problem, const Search& search) {
   return parted(problem) || 2 * search.blocked() > search.starts();
 }
 constexpr const char* kMoreTolerance = "try a larger --tolerance, more --starts or another --seed";
+constexpr const char* kMoreOrder =
+    "try a --method of higher order, such as gauss16, or a larger --tolerance";
 constexpr const char* kMoreMass =
     "try more mass for the lightest coordinate, more --starts or another --seed";
 constexpr const char* kOtherCoordinates =
@@ -206,6 +211,9 @@ Failure explain_failure(const BoundaryValueProblem& problem,
     return {Reason::kTooLong,
             "the shortest extremal found has the length " + text_of(shortest * scales.length()) +
                 ": try a larger --max-length"};
+  }
+  if (search.furthest() == Reason::kMethodTooCoarse) {
+    return {search.furthest(), fate(search.furthest()) + " (" + tried + "): " + kMoreOrder};
   }
   if (!options.guess.empty()) {
     return {joined ? search.furthest() : Reason::kGuessFailed,

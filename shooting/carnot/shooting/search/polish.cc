@@ -136,6 +136,7 @@ Outcome polish(const MassLadder& ladder,
     Outcome joined = join(problem, options, grid, patience, stop);
     come_to(outcome.reason, joined.reason);
     outcome.extremal = std::move(joined.extremal);
+    if (joined.reason == Reason::kMethodTooCoarse) return outcome;
     if (outcome.extremal || !grid.settled) break;
     refinement.enough = 0.2 * grid.change;
   }
@@ -171,7 +172,7 @@ Outcome polish(const BoundaryValueProblem& problem,
         continue;
       }
       Outcome verified = verify(problem, std::move(joined), 2 * kFewSteps, options.tolerance, stop);
-      if (verified.extremal) return verified;
+      if (verified.extremal || verified.reason == Reason::kMethodTooCoarse) return verified;
       come_to(furthest, verified.reason);
     }
   }

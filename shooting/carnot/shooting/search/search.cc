@@ -218,7 +218,8 @@ void Search::polish_all(const Refinements& refined, Polished& tally) {
     DiscreteExtremal& discrete = discrete_[refined[i].first];
     furthest_ = std::max(furthest_, polished[i].reason);
     // No finer grid helps there: with them sideways parking to 1e-22 took 15 s to say so, not 7.
-    if (polished[i].reason == Reason::kBeyondDouble) {
+    if (polished[i].reason == Reason::kMethodTooCoarse ||
+        polished[i].reason == Reason::kBeyondDouble) {
       discrete.fate = Fate::kTooRough;
       tally_.rough += discrete.hits.all();
       continue;
@@ -248,6 +249,7 @@ void Search::take(const std::optional<Extremal>& extremal) {
 
 void Search::take(const Outcome& outcome) {
   furthest_ = std::max(furthest_, outcome.reason);
+  if (outcome.reason == Reason::kMethodTooCoarse) ++tally_.rough;
   take(outcome.extremal);
 }
 

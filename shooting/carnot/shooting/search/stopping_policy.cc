@@ -76,8 +76,9 @@ constexpr int kSweeps = 24;
 // Hits of the least action before a search ends. With 2, 8 targets are missed, in 0.94 of the time;
 // with 5, 6 targets, in 1.01.
 constexpr int kEnoughHits = 3;
-// So many starts that lead to extremals which double precision cannot verify, and none to another,
-// say that there is no other. In no search of the tests one was found after the first of these.
+// So many starts that lead to extremals which double precision, or the method, cannot verify, and
+// none to another, say that there is no other. In no search of the tests one was found after the
+// first of these.
 constexpr int kSurelyRough = 20;
 // What is enough where there is drift. Its starts find minima only, and the search has to know that
 // the least of them is the least. With 3 and with 8 nothing changes on these 60.

@@ -19,7 +19,7 @@ struct SearchTally {
   int drawn = 0;                // of the sequence of starts
   int blocked = 0;              // that ran into a singularity of the coordinates
   int converged = 0;            // that led to an extremal, or to one that was given up
-  int rough = 0;                // of them, that led to what round-off keeps from its end
+  int rough = 0;                // of them, that led to what is too rough to be verified
   int crossed = 0;              // crossings that were tried (crossing.h); they are among the starts
   int crossings_converged = 0;  // of those that converged
 };
