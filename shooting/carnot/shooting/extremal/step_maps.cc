@@ -63,7 +63,7 @@ StepMaps::StepMaps(const BoundaryValueProblem& problem,
                    const Knots& knots,
                    long per_segment)
     : problem_(problem), units_(units), knots_(knots), per_segment_(per_segment) {
-  const auto size = static_cast<std::size_t>(2 * knots.dof);
+  const std::size_t size = 2 * static_cast<std::size_t>(knots.dof);
   const auto kept = static_cast<std::size_t>(std::min(kBlock, count()));
   nodes_.resize((kept + 1) * size);
   tangents_.resize(kept * size * size);

@@ -317,7 +317,7 @@ FlowReport flow(const void* opaque, const void*, const StepPlan& plan, double* z
 FlowReport tangent_flow(
     const void* opaque, const void*, const StepPlan& plan, double* z, double* m, double* nodes) {
   const Rescaled& r = Rescaled::from(opaque);
-  const auto size = static_cast<std::size_t>(2 * r.dof());
+  const std::size_t size = 2 * static_cast<std::size_t>(r.dof());
   const StepPlan own = r.in_own_time(plan);
   const std::size_t maps = nodes == nullptr ? 1 : static_cast<std::size_t>(plan.count);
   const std::span<double> at(z, size);
