@@ -39,9 +39,6 @@ int modes_of(int n, int i) {
 std::vector<double> amplitudes(int n, std::uint64_t seed, int i) {
   const int modes = modes_of(n, i);
   std::vector<double> a(static_cast<std::size_t>(n) * modes, 0.0);
-  std::seed_seq sequence{seed, seed >> 32U, static_cast<std::uint64_t>(i)};
-  std::mt19937_64 random(sequence);
-  std::normal_distribution<double> normal;
   if (i == 0) return a;  // the straight line itself
   if (is_designed(n, i)) {
     const int number = i / 4;
@@ -54,6 +51,9 @@ std::vector<double> amplitudes(int n, std::uint64_t seed, int i) {
     a[n + second] = number / 2 % 2 == 0 ? 1 : -1;
     return a;
   }
+  std::seed_seq sequence{seed, seed >> 32U, static_cast<std::uint64_t>(i)};
+  std::mt19937_64 random(sequence);
+  std::normal_distribution<double> normal;
   for (int m = 0; m < modes; ++m) {
     for (int j = 0; j < n; ++j) a[m * n + j] = normal(random) / (m + 1);
   }
