@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "carnot/numerics/scalar.h"
 #include "carnot/shooting/linear/round_off.h"
@@ -59,8 +61,26 @@ double knot_defect(const BoundaryValueProblem& problem, const Knots& knots, long
   return defect;
 }
 
+// The end of segment i with some steps, and with twice as many. Nothing where a flow fails.
+struct Halved {
+  std::vector<double> coarse;
+  std::vector<double> fine;
+};
+std::optional<Halved> halved(const BoundaryValueProblem& problem,
+                             const Knots& knots,
+                             int i,
+                             long steps) {
+  const std::vector<double> start(knots.at(i), knots.at(i) + 2 * knots.dof);
+  Halved ends{start, start};
+  const auto run = [&](long count, std::vector<double>& z) {
+    return problem.dynamics.flow(knot_plan(problem, knots.segments, i, count), z).completed();
+  };
+  if (!run(steps, ends.coarse) || !run(2 * steps, ends.fine)) return std::nullopt;
+  return ends;
+}
+
 // The fewest steps, doubling from `steps`, for which halving the step changes no segment by more
-// than round-off or a hundredth of the tolerance.
+// than round-off or a thousandth of the tolerance.
 long enough_steps(const BoundaryValueProblem& problem,
                   const Knots& knots,
                   long steps,
@@ -69,17 +89,11 @@ long enough_steps(const BoundaryValueProblem& problem,
   for (; steps < kMaxSteps; steps *= 2) {
     bool settled = true;
     for (int i = 0; i < knots.segments && settled; ++i) {
-      std::vector<double> coarse(knots.at(i), knots.at(i) + size);
-      std::vector<double> fine = coarse;
       double scale = 0;
-      for (const double x : coarse) scale = std::max(scale, std::abs(x));
-      const auto run = [&](long count, std::vector<double>& z) {
-        const StepPlan plan = knot_plan(problem, knots.segments, i, count);
-        return problem.dynamics.flow(plan, z).completed();
-      };
-      settled = run(steps, coarse) && run(2 * steps, fine);
+      for (int j = 0; j < size; ++j) scale = std::max(scale, std::abs(knots.at(i)[j]));
       const double allowed = std::max(kFlowRoundOff * scale, 1e-3 * tolerance);
-      settled = settled && largest_difference(coarse.data(), fine.data(), size) <= allowed;
+      const auto ends = halved(problem, knots, i, steps);
+      settled = ends && largest_difference(ends->coarse.data(), ends->fine.data(), size) <= allowed;
     }
     if (settled) break;
   }
@@ -91,14 +105,9 @@ long enough_steps(const BoundaryValueProblem& problem,
 double moved_by_halving(const BoundaryValueProblem& problem, const Knots& knots, long steps) {
   double moved = 0;
   for (int i = 0; i < knots.segments; ++i) {
-    std::vector<double> coarse(knots.at(i), knots.at(i) + 2 * knots.dof);
-    std::vector<double> fine = coarse;
-    const auto run = [&](long count, std::vector<double>& z) {
-      return problem.dynamics.flow(knot_plan(problem, knots.segments, i, count), z).completed();
-    };
-    if (!run(steps, coarse) || !run(2 * steps, fine))
-      return std::numeric_limits<double>::infinity();
-    moved = maximum(moved, largest_difference(coarse.data(), fine.data(), knots.dof));
+    const auto ends = halved(problem, knots, i, steps);
+    if (!ends) return std::numeric_limits<double>::infinity();
+    moved = maximum(moved, largest_difference(ends->coarse.data(), ends->fine.data(), knots.dof));
   }
   return moved;
 }

@@ -197,7 +197,9 @@ int DriftStarts::actuated() const {
   constexpr int kIntervals = 8192;  // of all of them together
   constexpr int kFewest = 12;
   constexpr int kMost = 144;
-  return std::clamp(kIntervals / intervals_, kFewest, kMost);
+  constexpr int kMostOnManifold = 96;  // which are all quick
+  const int most = problem_.dynamics.forced > 0 ? kMostOnManifold : kMost;
+  return std::clamp(kIntervals / intervals_, kFewest, most);
 }
 
 RelaxedStart DriftStarts::start(int i, int intervals, const Stop& stop) const {
