@@ -146,8 +146,8 @@ TEST(Failure, NotJoined) {
   EXPECT_EQ(outcome.reason, Reason::kNotJoined);
 }
 
-// The midpoint rule does not reach the tolerance with the steps that verification affords.
-// The midpoint rule is good to 1e-5 with 4096 steps. Twenty starts say so, not a thousand.
+// The midpoint rule does not reach the tolerance with the steps that verification affords. Some
+// twenty starts say so, not a thousand. It does reach a larger one.
 TEST(Failure, MethodTooCoarse) {
   constexpr int kFew = 40;
   const BoundaryValueProblem problem(test::vehicle_midpoint(), {0, 0, 0, 0}, {0, 1, 0, 0});

@@ -14,8 +14,8 @@
 namespace carnot::internal {
 namespace {
 
-// Samples that tell the largest value between them. The default for parking takes 25 of the
-// steering angle: with 3 of them the largest is 1.5e-5 too small, and with 9 it is right to 1e-9.
+// Samples that tell the largest value between them. With 3 of them the largest steering angle of
+// sideways parking is 1.4e-5 too small, and with 9 it is right to 1e-10.
 constexpr int kMostInterpolated = 9;
 
 // How well the phases at T are known. p0 is as good as the end point error is relative to the

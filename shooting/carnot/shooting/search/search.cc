@@ -249,6 +249,7 @@ void Search::take(const std::optional<Extremal>& extremal) {
 
 void Search::take(const Outcome& outcome) {
   furthest_ = std::max(furthest_, outcome.reason);
+  // Not beyond double: of momenta that are drawn some lead to long extremals, others to short ones.
   if (outcome.reason == Reason::kMethodTooCoarse) ++tally_.rough;
   take(outcome.extremal);
 }

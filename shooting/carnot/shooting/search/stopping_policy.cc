@@ -78,7 +78,8 @@ constexpr int kSweeps = 24;
 constexpr int kEnoughHits = 3;
 // So many starts that lead to extremals which double precision, or the method, cannot verify, and
 // none to another, say that there is no other. In no search of the tests one was found after the
-// first of these.
+// first that round-off spoils. Six searches with RATTLE at tolerances that it just reaches still
+// find what they found.
 constexpr int kSurelyRough = 20;
 // What is enough where there is drift. Its starts find minima only, and the search has to know that
 // the least of them is the least. With 3 and with 8 nothing changes on these 60.
