@@ -185,7 +185,8 @@ struct Dynamics {
   // How many intervals `midpoints` and `discrete_lagrangians` take side by side.
   static constexpr int kMidpointLanes = 8;
   // The same as `midpoint` for kMidpointLanes intervals: number i of interval l is at
-  // i * kMidpointLanes + l of each array. False where one of them fails. Several times as fast.
+  // i * kMidpointLanes + l of each array. False where one of them fails; its terms are NaN then,
+  // and those of the others are what they would be without it. Several times as fast.
   [[nodiscard]] bool midpoints(std::span<const double> qm,
                                std::span<const double> v,
                                std::span<double> terms,

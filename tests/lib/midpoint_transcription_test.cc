@@ -421,6 +421,41 @@ void expect_one_failure(const Transcription& one, test::Generator& generator) {
     }
   }
 }
+// What stands in one lane changes nothing in the others, to the last bit: not an angle for which
+// packs have no sine, and not a number that is none. That one has no terms.
+void expect_lanes_apart(const Transcription& one, test::Generator& generator) {
+  constexpr int kChanged = 6;
+  constexpr double kFar = 4e6;
+  const int n = one.dof(), count = one.term_count(), m = one.unknowns();
+  const TranscriptionFunctions& f = one.functions;
+  const Packed x = random_numbers(m * kTranscriptionLanes, generator);
+  const auto numbers_at = [&](const Packed& at) {
+    Packed terms = packed(count), slopes = packed(count * 2 * n);
+    Packed gradient = packed(m), hessian = packed(m * m);
+    const double* const v = at.data() + n * kTranscriptionLanes;
+    (void)packed_midpoint_terms(f, one.system, at.data(), v, terms.data(), slopes.data());
+    packed_discrete_lagrangian(f, one.system, 0.3, at.data(), gradient.data(), hessian.data());
+    return std::vector<Packed>{terms, slopes, gradient, hessian};
+  };
+  const std::vector<Packed> before = numbers_at(x);
+  for (const double change : {kFar, std::numeric_limits<double>::quiet_NaN()}) {
+    Packed other = x;
+    for (int i = 0; i < 2 * n; ++i) other[i * kTranscriptionLanes + kChanged] += change;
+    const std::vector<Packed> after = numbers_at(other);
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      for (int l = 0; l < kTranscriptionLanes; ++l) {
+        if (l != kChanged) {
+          EXPECT_EQ(lane(after[i], l), lane(before[i], l));
+        }
+      }
+    }
+    EXPECT_EQ(std::isnan(change), std::isnan(after[0][kChanged]));
+  }
+}
+TYPED_TEST(MidpointDerivativesTest, LanesAreApart) {
+  expect_lanes_apart(this->transcription_, this->generator_);
+}
+
 TYPED_TEST(MidpointDerivativesTest, OneFailureSideBySideDoesNotSpoilTheOthers) {
   expect_one_failure(this->transcription_, this->generator_);
 }

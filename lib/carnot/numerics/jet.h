@@ -21,6 +21,18 @@
 
 namespace carnot {
 
+// sin x and cos x; packs (pack.h) have both for little more than one of them.
+template <class T>
+struct SineAndCosine {
+  T sine;
+  T cosine;
+};
+template <class T>
+SineAndCosine<T> sine_and_cosine(const T& x) {
+  using std::cos, std::sin;
+  return {sin(x), cos(x)};
+}
+
 // A value with the derivatives of it.
 template <class T, int N>
 struct Jet {
@@ -236,14 +248,20 @@ Jet<T, N> log(const Jet<T, N>& x) {
   return Jet<T, N>::chain(log(x.a), T(1) / x.a, x);
 }
 template <class T, int N>
+SineAndCosine<Jet<T, N>> sine_and_cosine(const Jet<T, N>& x) {
+  const auto of_value = sine_and_cosine(x.a);
+  return {Jet<T, N>::chain(of_value.sine, of_value.cosine, x),
+          Jet<T, N>::chain(of_value.cosine, -of_value.sine, x)};
+}
+template <class T, int N>
 Jet<T, N> sin(const Jet<T, N>& x) {
-  using std::cos, std::sin;
-  return Jet<T, N>::chain(sin(x.a), cos(x.a), x);
+  const auto of_value = sine_and_cosine(x.a);
+  return Jet<T, N>::chain(of_value.sine, of_value.cosine, x);
 }
 template <class T, int N>
 Jet<T, N> cos(const Jet<T, N>& x) {
-  using std::cos, std::sin;
-  return Jet<T, N>::chain(cos(x.a), -sin(x.a), x);
+  const auto of_value = sine_and_cosine(x.a);
+  return Jet<T, N>::chain(of_value.cosine, -of_value.sine, x);
 }
 template <class T, int N>
 Jet<T, N> tan(const Jet<T, N>& x) {

@@ -299,7 +299,19 @@ class Pack {
   friend Pack cos(const Pack& a) {
     return each([&](int i) { return pack_lane::sin_cos(a.part(i)).cos; });
   }
-  friend Pack tan(const Pack& a) { return sin(a) / cos(a); }
+  friend SineAndCosine<Pack> sine_and_cosine(const Pack& a) {
+    SineAndCosine<Pack> result;
+    for (int i = 0; i < kParts; ++i) {
+      const auto both = pack_lane::sin_cos(a.part(i));
+      result.sine.part_[i] = Ops::register_of(both.sin);
+      result.cosine.part_[i] = Ops::register_of(both.cos);
+    }
+    return result;
+  }
+  friend Pack tan(const Pack& a) {
+    const auto both = sine_and_cosine(a);
+    return both.sine / both.cosine;
+  }
   // Number by number.
   friend Pack exp(const Pack& a) {
     return each_number(a, [](double x) { return std::exp(x); });

@@ -44,10 +44,9 @@ T stumpff_series(const T& s) {
   return sum[0];
 }
 
-// On packs, where all lanes go one way.
+// On packs. The way of a lane does not depend on the others; one that none goes is left out.
 template <int k, class T>
-T packed_stumpff(const T& s) {
-  if (all(s <= T(kNearStumpff))) return stumpff_series<k>(s);
+T far_stumpff(const T& s) {
   const T root = sqrt(max(s, T(1e-300)));
   if constexpr (k == 0) {
     return cos(root);
@@ -56,9 +55,15 @@ T packed_stumpff(const T& s) {
   } else {
     double factorial = 1;
     for (int i = 2; i <= k - 2; ++i) factorial *= i;
-    const T far = (T(1 / factorial) - packed_stumpff<k - 2>(s)) / max(s, T(1));
-    return select(s <= T(kNearStumpff), stumpff_series<k>(min(s, T(kNearStumpff))), far);
+    return (T(1 / factorial) - far_stumpff<k - 2>(s)) / max(s, T(1));
   }
+}
+template <int k, class T>
+T packed_stumpff(const T& s) {
+  const T limit(kNearStumpff);
+  if (all(s <= limit)) return stumpff_series<k>(s);
+  if (all(s > limit)) return far_stumpff<k>(s);
+  return select(s <= limit, stumpff_series<k>(min(s, limit)), far_stumpff<k>(s));
 }
 
 // c_k(s) for s >= 0. Values to a few units of round-off; on Jets by the derivative above.

@@ -18,47 +18,86 @@ namespace {
 constexpr int kLanes = kTranscriptionLanes;
 using LanePack = Pack<kLanes>;
 
-// Numbers with their derivatives: a row of `known` of them each, the value first. T is double, or
-// the numbers of kLanes intervals side by side. The compiler is to know the length: where it did
-// not, searches of trailers took 1.3 times as long.
+// a where it is true, else b.
+double chosen(bool is, double a, double b) { return is ? a : b; }
+LanePack chosen(const LanePack::Mask& is, const LanePack& a, const LanePack& b) {
+  return select(is, a, b);
+}
+
+// A number with its derivatives: `known` numbers, the value first. T is double, or the numbers of
+// kLanes intervals side by side. The compiler is to know how many: where it did not, searches of
+// trailers took 1.3 times as long. What is summed up here stays in registers: where each summand
+// was added to memory, starts of a vehicle took 1.08 times
+// as long to relax.
+template <class T, int known>
+class Number {
+ public:
+  Number() : at_{} {}
+  explicit Number(const T* from) {
+#pragma GCC unroll 16
+    for (int d = 0; d < known; ++d) at_[d] = from[d];
+  }
+  void store(T* to) const {
+#pragma GCC unroll 16
+    for (int d = 0; d < known; ++d) to[d] = at_[d];
+  }
+  const T& operator[](int d) const { return at_[d]; }
+  [[nodiscard]] const T& value() const { return at_[0]; }
+
+  // += factor x, += x y and -= x y, with derivatives. Each product is added by itself: there is one
+  // way only to fuse it with its sum, so that packs and plain numbers round alike.
+  template <class X>
+  [[gnu::always_inline]] void add(const T& factor, const X& x) {
+#pragma GCC unroll 16
+    for (int d = 0; d < known; ++d) at_[d] += factor * x[d];
+  }
+  template <class X, class Y>
+  [[gnu::always_inline]] void add_product(const X& x, const Y& y) {
+    at_[0] += x[0] * y[0];
+#pragma GCC unroll 16
+    for (int d = 1; d < known; ++d) {
+      at_[d] += x[0] * y[d];
+      at_[d] += y[0] * x[d];
+    }
+  }
+  template <class X, class Y>
+  [[gnu::always_inline]] void subtract_product(const X& x, const Y& y) {
+    at_[0] -= x[0] * y[0];
+#pragma GCC unroll 16
+    for (int d = 1; d < known; ++d) {
+      at_[d] -= x[0] * y[d];
+      at_[d] -= y[0] * x[d];
+    }
+  }
+  // /= y, with the inverse of y.
+  [[gnu::always_inline]] void divide(const Number& y, const T& inverse) {
+    at_[0] = at_[0] * inverse;
+#pragma GCC unroll 16
+    for (int d = 1; d < known; ++d) at_[d] = (at_[d] - at_[0] * y[d]) * inverse;
+  }
+  // Its root, which is not a number unless it is larger than `least` and than zero.
+  [[gnu::always_inline]] void take_root(const T& least) {
+    using std::sqrt;
+    const T nan(std::numeric_limits<double>::quiet_NaN());
+    at_[0] = sqrt(chosen(at_[0] > least, chosen(at_[0] > T(0), at_[0], nan), nan));
+    const T factor = T(0.5) / at_[0];
+#pragma GCC unroll 16
+    for (int d = 1; d < known; ++d) at_[d] = factor * at_[d];
+  }
+
+ private:
+  T at_[known];
+};
+
+// Numbers with their derivatives, one after the other.
 template <class T, int known>
 class Rows {
  public:
   explicit Rows(T* data) : data_(data) {}
 
-  // Row i.
-  T* operator[](int i) const { return data_ + i * length(); }
-  [[nodiscard]] static constexpr int length() { return known; }
-
-  void clear(T* row) const {
-    for (int d = 0; d < length(); ++d) row[d] = T(0);
-  }
-  // sum += factor x, and sum += a x y, with derivatives. The rows are different ones.
-  void add(const T& factor, const T* __restrict x, T* __restrict sum) const {
-    for (int d = 0; d < length(); ++d) sum[d] += factor * x[d];
-  }
-  void add_product(double a, const T* x, const T* y, T* __restrict sum) const {
-    const T by_x = T(a) * y[0];
-    const T by_y = T(a) * x[0];
-    for (int d = 0; d < length(); ++d) sum[d] += by_x * x[d] + by_y * slope(y, d);
-  }
-  // x /= y.
-  void divide(T* __restrict x, const T* __restrict y) const {
-    const T inverse = T(1) / y[0];
-    const T ratio = x[0] * inverse;
-    for (int d = 0; d < length(); ++d) x[d] = (x[d] - ratio * slope(y, d)) * inverse;
-  }
-  void take_root(T* x) const {
-    using std::sqrt;
-    const T factor = T(0.5) / sqrt(x[0]);
-    for (int d = 0; d < length(); ++d) x[d] = factor * (x[d] + (x[d] - slope(x, d)));
-  }
+  T* operator[](int i) const { return data_ + i * known; }
 
  private:
-  // Number d of a row, without its value. Rows are written as a whole: where one number of a row is
-  // written alone, the processor waits before it can load the row again.
-  static T slope(const T* row, int d) { return d == 0 ? T(0) : row[d]; }
-
   T* data_;
 };
 
@@ -106,89 +145,92 @@ Entries<T, known> entries_at(const TranscriptionFunctions& functions,
   return {functions.dof, functions.constraints, Rows<T, known>(memory)};
 }
 
-// M := M + gamma G'G with gamma = trace M / trace G'G. `work` has three rows.
+// M := M + gamma G'G with gamma = trace M / trace G'G.
 template <class T, int known>
-void regularise(const Entries<T, known>& e, T* work) {
-  const Rows<T, known>& rows = e.rows;
-  T* const gamma = work;
-  T* const trace = work + rows.length();
-  T* const square = trace + rows.length();
-  rows.clear(gamma);
-  rows.clear(trace);
-  for (int i = 0; i < e.n; ++i) rows.add(1, e.mass(i, i), gamma);
-  for (int i = 0; i < e.k; ++i) {
-    for (int j = 0; j < e.n; ++j) {
-      rows.add_product(1, e.constraint(i, j), e.constraint(i, j), trace);
-    }
-  }
-  rows.divide(gamma, trace);
+void regularise(const Entries<T, known>& e) {
+  Number<T, known> gamma;
+  Number<T, known> trace;
+  for (int i = 0; i < e.n; ++i) gamma.add(T(1), e.mass(i, i));
+  for (int i = 0; i < e.k * e.n; ++i) trace.add_product(e.constraint(0, i), e.constraint(0, i));
+  gamma.divide(trace, T(1) / trace.value());
   for (int i = 0; i < e.n; ++i) {
     for (int j = 0; j <= i; ++j) {
-      rows.clear(square);
-      for (int l = 0; l < e.k; ++l) {
-        rows.add_product(1, e.constraint(l, i), e.constraint(l, j), square);
-      }
-      rows.add_product(1, gamma, square, e.mass(i, j));
+      Number<T, known> square;
+      for (int l = 0; l < e.k; ++l) square.add_product(e.constraint(l, i), e.constraint(l, j));
+      Number<T, known> entry(e.mass(i, j));
+      entry.add_product(gamma, square);
+      entry.store(e.mass(i, j));
     }
   }
 }
 
 // M := C, the lower triangle with C C' = M, by Cholesky's method, differentiated line by line.
-// False where M is not positive definite to round-off.
+// Where M is not positive definite to round-off, C is not a number.
 template <class T, int known>
-bool factor(const Entries<T, known>& e) {
-  const Rows<T, known>& rows = e.rows;
+void factor(const Entries<T, known>& e) {
   // A pivot must exceed the round-off that its own row can produce.
   const T threshold(16 * e.n * std::numeric_limits<double>::epsilon());
   for (int j = 0; j < e.n; ++j) {
-    T* const pivot = e.mass(j, j);
-    const T diagonal = pivot[0];
-    for (int l = 0; l < j; ++l) rows.add_product(-1, e.mass(j, l), e.mass(j, l), pivot);
-    if (!all(pivot[0] > threshold * diagonal) || !all(pivot[0] > T(0))) return false;
-    rows.take_root(pivot);
+    Number<T, known> pivot(e.mass(j, j));
+    const T least = threshold * pivot.value();
+    for (int l = 0; l < j; ++l) pivot.subtract_product(e.mass(j, l), e.mass(j, l));
+    pivot.take_root(least);
+    pivot.store(e.mass(j, j));
+    const T inverse = T(1) / pivot.value();
     for (int i = j + 1; i < e.n; ++i) {
-      T* const entry = e.mass(i, j);
-      for (int l = 0; l < j; ++l) rows.add_product(-1, e.mass(i, l), e.mass(j, l), entry);
-      rows.divide(entry, pivot);
+      Number<T, known> entry(e.mass(i, j));
+      for (int l = 0; l < j; ++l) entry.subtract_product(e.mass(i, l), e.mass(j, l));
+      entry.divide(pivot, inverse);
+      entry.store(e.mass(i, j));
     }
   }
-  return true;
 }
 
-// `memory` has room for the entries and three rows.
+// Where the numbers of one interval are put, or those of kLanes intervals side by side.
+template <class T>
+void put(const T& x, double* to, int i) {
+  if constexpr (std::is_same_v<T, double>) {
+    to[i] = x;
+  } else {
+    x.store(to + i * kLanes);
+  }
+}
+
+// `memory` has room for the entries. Numbers that do not exist are NaN; the jacobian may be null.
 template <class T, int known>
-bool terms_of(const TranscriptionFunctions& functions,
+void terms_of(const TranscriptionFunctions& functions,
               const void* system,
               const double* qm,
               const T* v,
               T* memory,
-              T* terms,
-              T* jacobian) {
+              double* terms,
+              double* jacobian) {
   const int n = functions.dof;
   const int k = functions.constraints;
-  const int count = entry_count(functions);
   const auto e = entries_at<T, known>(functions, system, qm, memory);
-  if (k > 0) regularise(e, memory + count * known);
-  if (!factor(e)) return false;
-  for (int i = 0; i < n + k; ++i) terms[i] = T(0);
-  if (jacobian != nullptr) std::fill_n(jacobian, (n + k + 1) * 2 * n, T(0));
-  // Adds a v_j to term `to`.
-  const auto add_velocity = [&](const T* a, int j, int to) {
-    terms[to] += a[0] * v[j];
+  if (k > 0) regularise(e);
+  factor(e);
+  // Term `to`: sum_j a(j) v_j for j from `first` on.
+  const auto set = [&](int to, int first, const auto& a) {
+    Number<T, known> sum;
+    for (int j = first; j < n; ++j) sum.add(v[j], a(j));
+    put(sum.value(), terms, to);
     if (jacobian == nullptr) return;
-    T* const by_q = jacobian + to * 2 * n;
-    for (int d = 0; d < n; ++d) by_q[d] += v[j] * a[1 + d];
-    by_q[n + j] = a[0];
+    const int row = to * 2 * n;
+    for (int d = 0; d < n; ++d) put(sum[1 + d], jacobian, row + d);
+    for (int j = 0; j < n; ++j) put(j < first ? T(0) : a(j)[0], jacobian, row + n + j);
   };
   for (int i = 0; i < n; ++i) {
-    for (int j = i; j < n; ++j) add_velocity(e.mass(j, i), j, i);
+    set(i, i, [&](int j) { return e.mass(j, i); });
   }
   for (int i = 0; i < k; ++i) {
-    for (int j = 0; j < n; ++j) add_velocity(e.constraint(i, j), j, n + i);
+    set(n + i, 0, [&](int j) { return e.constraint(i, j); });
   }
-  terms[n + k] = e.potential()[0];
-  if (jacobian != nullptr) std::copy_n(e.potential() + 1, n, jacobian + (n + k) * 2 * n);
-  return true;
+  put(e.potential()[0], terms, n + k);
+  if (jacobian == nullptr) return;
+  const int row = (n + k) * 2 * n;
+  for (int d = 0; d < n; ++d) put(e.potential()[1 + d], jacobian, row + d);
+  for (int j = 0; j < n; ++j) put(T(0), jacobian, row + n + j);
 }
 
 // l_qq of one interval, or of kLanes of them.
@@ -214,7 +256,7 @@ void set_hessian(const TranscriptionFunctions& functions,
 // What derivatives_of() needs room for.
 int numbers_of_derivatives(const TranscriptionFunctions& functions, int known) {
   const int n = functions.dof;
-  return (entry_count(functions) + 1 + n + functions.constraints) * known + 2 * n + n * n;
+  return (entry_count(functions) + n + functions.constraints) * known + 2 * n + n * n;
 }
 
 // With the first derivatives of l(q, v) at fixed lambda,
@@ -237,8 +279,8 @@ void derivatives_of(const TranscriptionFunctions& functions,
                     double h,
                     const T* x,
                     T* memory,
-                    T* gradient,
-                    T* hessian) {
+                    double* gradient,
+                    double* hessian) {
   const int n = functions.dof;
   const int k = functions.constraints;
   const int m = 2 * n + k;
@@ -249,8 +291,7 @@ void derivatives_of(const TranscriptionFunctions& functions,
     return taken;
   };
   T* const entries = take(entry_count(functions) * known);
-  // l, l_v and g, each number in a row with its derivatives by q.
-  const Rows<T, known> l(take(known));
+  // l_v and g, each number with its derivatives by q.
   const Rows<T, known> momentum(take(n * known));
   const Rows<T, known> g(take(k * known));
   T* const qm = take(n);
@@ -266,40 +307,42 @@ void derivatives_of(const TranscriptionFunctions& functions,
   const auto u = [&](int j) { return functions.gauge ? v[j] - lambda[j] : v[j]; };
   const auto e =
       entries_at<T, known>(functions, system, reinterpret_cast<const double*>(qm), entries);
-  l.clear(l[0]);
-  l.add(-1, e.potential(), l[0]);
-  for (int i = 0; i < n; ++i) momentum.clear(momentum[i]);
+  Number<T, known> l;
+  l.add(T(-1), e.potential());
   for (int i = 0; i < n; ++i) {
-    for (int j = 0; j <= i; ++j) {
-      const T* const entry = e.mass(i, j);
-      l.add(T(j < i ? 1 : 0.5) * v[i] * v[j], entry, l[0]);
-      momentum.add(v[j], entry, momentum[i]);
-      if (j < i) momentum.add(v[i], entry, momentum[j]);
+    Number<T, known> sum;
+    for (int j = 0; j < n; ++j) {
+      const T* const entry = j <= i ? e.mass(i, j) : e.mass(j, i);
+      sum.add(v[j], entry);
+      if (j <= i) l.add(T(j < i ? 1 : 0.5) * v[i] * v[j], entry);
     }
+    for (int j = 0; j < k; ++j) sum.add(-lambda[j], e.constraint(j, i));
+    sum.store(momentum[i]);
   }
   for (int i = 0; i < k; ++i) {
-    g.clear(g[i]);
-    if (functions.gauge) g[i][0] = lambda[i];
+    Number<T, known> sum;
     for (int j = 0; j < n; ++j) {
       const T* const entry = e.constraint(i, j);
-      l.add(-lambda[i] * w(j), entry, l[0]);
-      momentum.add(-lambda[i], entry, momentum[j]);
-      g.add(u(j), entry, g[i]);
+      sum.add(u(j), entry);
+      l.add(-lambda[i] * w(j), entry);
     }
+    sum.store(g[i]);
+    if (functions.gauge) g[i][0] += lambda[i];
   }
-  const T* const l_q = l[0] + 1;
+  const auto l_q = [&](int i) { return l[1 + i]; };
   const auto l_v = [&](int i) { return momentum[i][0]; };
   const auto l_vq = [&](int i, int j) { return momentum[i][1 + j]; };
   for (int i = 0; i < n; ++i) {
-    gradient[i] = T(0.5 * h) * l_q[i] - l_v(i);
-    gradient[n + i] = T(0.5 * h) * l_q[i] + l_v(i);
+    put(T(0.5 * h) * l_q(i) - l_v(i), gradient, i);
+    put(T(0.5 * h) * l_q(i) + l_v(i), gradient, n + i);
   }
-  for (int i = 0; i < k; ++i) gradient[2 * n + i] = T(-h) * g[i][0];
+  for (int i = 0; i < k; ++i) put(T(-h) * g[i][0], gradient, 2 * n + i);
   if (hessian == nullptr) return;
   set_hessian(functions, system, qm, v, lambda, l_qq);
   // Entry (row, column) and its mirror image.
   const auto set = [&](int row, int column, const T& value) {
-    hessian[column * m + row] = hessian[row * m + column] = value;
+    put(value, hessian, column * m + row);
+    put(value, hessian, row * m + column);
   };
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
@@ -307,8 +350,8 @@ void derivatives_of(const TranscriptionFunctions& functions,
       const T velocity = (j <= i ? e.mass(i, j) : e.mass(j, i))[0] / T(h);
       const T symmetric = T(0.5) * (l_vq(i, j) + l_vq(j, i));
       const T skew = T(0.5) * (l_vq(j, i) - l_vq(i, j));
-      hessian[j * m + i] = position - symmetric + velocity;
-      hessian[(n + j) * m + n + i] = position + symmetric + velocity;
+      put(position - symmetric + velocity, hessian, j * m + i);
+      put(position + symmetric + velocity, hessian, (n + j) * m + n + i);
       set(i, n + j, position + skew - velocity);
     }
   }
@@ -321,7 +364,7 @@ void derivatives_of(const TranscriptionFunctions& functions,
     }
     for (int j = 0; j < k; ++j) {
       const T p = functions.gauge ? T(i == j ? 1 : 0) - e.constraint(i, j)[0] : T(0);
-      hessian[(2 * n + j) * m + 2 * n + i] = T(-h) * p;
+      put(T(-h) * p, hessian, (2 * n + j) * m + 2 * n + i);
     }
   }
 }
@@ -369,11 +412,18 @@ bool runs_on_packs(const TranscriptionFunctions& functions) {
   return functions.packed_entries != nullptr && functions.dof <= kMostPacked;
 }
 
-// Packs have no sine of large angles (pack.h), and one interval that fails is not to spoil others.
-bool all_finite(const double* x, int rows) {
+// Which lanes hold `rows` finite numbers. Packs have no sine of large angles (pack.h).
+std::array<bool, kLanes> finite_lanes(const double* x, int rows) {
   LanePack sum(0);
   for (int i = 0; i < rows; ++i) sum += LanePack(0) * LanePack::load(x + i * kLanes);
-  return all(sum <= LanePack(0));
+  std::array<double, kLanes> zeros;
+  sum.store(zeros.data());
+  std::array<bool, kLanes> finite;
+  for (int l = 0; l < kLanes; ++l) finite[l] = zeros[l] == 0;
+  return finite;
+}
+bool all_of(const std::array<bool, kLanes>& lanes) {
+  return std::all_of(lanes.begin(), lanes.end(), [](bool lane) { return lane; });
 }
 
 // Numbers of kLanes intervals side by side, `count` of each.
@@ -383,9 +433,11 @@ struct Lanes {
   int count;
 };
 
-// Calls run(arguments, results) for each interval, with its own numbers. False where one fails.
+// Calls run(arguments, results) for each interval that is not known, with its own numbers: what
+// stands beside it is not to change. False where one fails; its numbers are NaN then.
 template <std::size_t inputs, std::size_t outputs, class Run>
-bool lane_by_lane(const Lanes<const double> (&in)[inputs],
+bool lane_by_lane(const std::array<bool, kLanes>& known,
+                  const Lanes<const double> (&in)[inputs],
                   const Lanes<double> (&out)[outputs],
                   const Run& run) {
   std::array<std::vector<double>, inputs> arguments;
@@ -402,12 +454,17 @@ bool lane_by_lane(const Lanes<const double> (&in)[inputs],
   }
   bool good = true;
   for (int l = 0; l < kLanes; ++l) {
+    if (known[l]) continue;
     for (std::size_t i = 0; i < inputs; ++i) {
       for (int a = 0; a < in[i].count; ++a) arguments[i][a] = in[i].data[a * kLanes + l];
     }
-    good = run(from, to) && good;
+    const bool exists = run(from, to);
+    good = good && exists;
     for (std::size_t i = 0; i < outputs; ++i) {
-      for (int a = 0; a < out[i].count; ++a) out[i].data[a * kLanes + l] = results[i][a];
+      for (int a = 0; a < out[i].count; ++a) {
+        out[i].data[a * kLanes + l] =
+            exists ? results[i][a] : std::numeric_limits<double>::quiet_NaN();
+      }
     }
   }
   return good;
@@ -422,11 +479,15 @@ bool midpoint_terms(const TranscriptionFunctions& functions,
                     double* terms,
                     double* jacobian) {
   const auto run = [&](auto length) {
-    auto* const memory = scratch<double>((entry_count(functions) + 3) * length());
-    return terms_of<double, length()>(functions, system, qm, v, memory, terms, jacobian);
+    auto* const memory = scratch<double>(entry_count(functions) * length());
+    terms_of<double, length()>(functions, system, qm, v, memory, terms, jacobian);
   };
-  if (jacobian == nullptr) return run(std::integral_constant<int, 1>{});
-  return with_rows(functions.dof, run);
+  if (jacobian == nullptr) {
+    run(std::integral_constant<int, 1>{});
+  } else {
+    with_rows(functions.dof, run);
+  }
+  return std::none_of(terms, terms + functions.dof, [](double r) { return std::isnan(r); });
 }
 
 bool packed_midpoint_terms(const TranscriptionFunctions& functions,
@@ -439,26 +500,20 @@ bool packed_midpoint_terms(const TranscriptionFunctions& functions,
   const int count = n + functions.constraints + 1;
   const int slopes = jacobian == nullptr ? 0 : count * 2 * n;
   const auto run = [&](auto length) {
-    const int work = (entry_count(functions) + 3) * length();
-    auto* const memory = scratch<LanePack>(work + n + count + slopes);
+    const int work = entry_count(functions) * length();
+    auto* const memory = scratch<LanePack>(work + n);
     LanePack* const velocity = memory + work;
-    LanePack* const values = velocity + n;
-    LanePack* const by_both = values + count;
     for (int j = 0; j < n; ++j) velocity[j] = LanePack::load(v + j * kLanes);
-    const bool good = terms_of<LanePack, length()>(
-        functions, system, qm, velocity, memory, values, slopes > 0 ? by_both : nullptr);
-    for (int i = 0; i < count; ++i) values[i].store(terms + i * kLanes);
-    for (int i = 0; i < slopes; ++i) by_both[i].store(jacobian + i * kLanes);
-    return good;
+    terms_of<LanePack, length()>(functions, system, qm, velocity, memory, terms, jacobian);
+    return finite_lanes(terms, count);
   };
-  const bool packs = runs_on_packs(functions);
-  const bool good =
-      packs && (slopes == 0 ? run(std::integral_constant<int, 1>{}) : with_packed_rows(n, run));
-  if (good && all_finite(terms, count) && all_finite(jacobian, slopes)) {
-    return true;
+  std::array<bool, kLanes> good{};
+  if (runs_on_packs(functions)) {
+    good = slopes == 0 ? run(std::integral_constant<int, 1>{}) : with_packed_rows(n, run);
   }
+  if (all_of(good)) return true;
   return lane_by_lane(
-      {{qm, n}, {v, n}}, {{terms, count}, {jacobian, slopes}}, [&](auto in, auto out) {
+      good, {{qm, n}, {v, n}}, {{terms, count}, {jacobian, slopes}}, [&](auto in, auto out) {
         return midpoint_terms(
             functions, system, in[0], in[1], out[0], slopes > 0 ? out[1] : nullptr);
       });
@@ -484,22 +539,19 @@ void packed_discrete_lagrangian(const TranscriptionFunctions& functions,
                                 double* hessian) {
   const int m = 2 * functions.dof + functions.constraints;
   const int second = hessian == nullptr ? 0 : m * m;
+  std::array<bool, kLanes> good{};
   if (runs_on_packs(functions)) {
     with_packed_rows(functions.dof, [&](auto length) {
       const int work = numbers_of_derivatives(functions, length());
-      auto* const memory = scratch<LanePack>(work + 2 * m + second);
+      auto* const memory = scratch<LanePack>(work + m);
       LanePack* const at = memory + work;
-      LanePack* const first = at + m;
-      LanePack* const last = first + m;
       for (int i = 0; i < m; ++i) at[i] = LanePack::load(x + i * kLanes);
-      derivatives_of<LanePack, length()>(
-          functions, system, h, at, memory, first, second > 0 ? last : nullptr);
-      for (int i = 0; i < m; ++i) first[i].store(gradient + i * kLanes);
-      for (int i = 0; i < second; ++i) last[i].store(hessian + i * kLanes);
+      derivatives_of<LanePack, length()>(functions, system, h, at, memory, gradient, hessian);
     });
-    if (all_finite(gradient, m)) return;
+    good = finite_lanes(gradient, m);
   }
-  lane_by_lane({{x, m}}, {{gradient, m}, {hessian, second}}, [&](auto in, auto out) {
+  if (all_of(good)) return;
+  lane_by_lane(good, {{x, m}}, {{gradient, m}, {hessian, second}}, [&](auto in, auto out) {
     discrete_lagrangian(functions, system, h, in[0], out[0], second > 0 ? out[1] : nullptr);
     return true;
   });

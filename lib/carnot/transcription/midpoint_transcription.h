@@ -38,7 +38,9 @@ void discrete_lagrangian(const TranscriptionFunctions& functions,
                          double* hessian);
 
 // The same two for kTranscriptionLanes intervals side by side: number i of interval l is at
-// i * kTranscriptionLanes + l of each array. Four to six times as fast as one by one.
+// i * kTranscriptionLanes + l of each array. The numbers of an interval do not depend on what
+// stands beside it. False where one fails; its terms are NaN then. Four to six times as fast as one
+// by one.
 [[nodiscard]] bool packed_midpoint_terms(const TranscriptionFunctions& functions,
                                          const void* system,
                                          const double* qm,
