@@ -77,6 +77,21 @@ TYPED_TEST(VelocityConstraintsTest, WrappersHideWhatTheySay) {
   static_assert(IndexOneSystem<VelocityConstraints<Bare>>);
 }
 
+// A scene that says that its M is constant gives the same one everywhere, and all others do not.
+TYPED_TEST(VelocityConstraintsTest, SaysWhetherTheMassIsConstant) {
+  bool constant = true;
+  this->at_all_points([&](const auto& q, const auto& /*p*/) {
+    constexpr int n = TypeParam::kDof;
+    const auto mass = this->framed_.scene().mass(seeded(q));
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) {
+        for (int d = 0; d < n; ++d) constant = constant && mass(i, j).v[d] == 0;
+      }
+    }
+  });
+  EXPECT_EQ(constant, HasConstantMass<TypeParam>);
+}
+
 TYPED_TEST(VelocityConstraintsTest, FrameRouteAgreesWithMultiplierRoute) {
   this->at_all_points([&](const auto& q, const auto& p) {
     const Solved a(this->framed_, q, p);

@@ -18,6 +18,11 @@ concept VelocityConstrainedScene = requires(const S& scene, const Vector<double,
   { scene.constraints(q) } -> std::convertible_to<Matrix<double, S::kMultipliers, S::kDof>>;
 };
 
+// A scene may say `kConstantMass = true`: M does not depend on q, and nobody asks for its
+// derivatives.
+template <class S>
+concept HasConstantMass = S::kConstantMass;
+
 template <class S>
 concept HasPotential = requires(const S& scene, const Vector<double, S::kDof>& q) {
   { scene.potential(q) } -> std::convertible_to<double>;

@@ -26,6 +26,7 @@ namespace carnot::scenes {
 struct Engel {
   static constexpr int kDof = 4;
   static constexpr int kMultipliers = 2;
+  static constexpr bool kConstantMass = true;
 
   template <class T>
   [[nodiscard]] Matrix<T, 4, 4> mass(const Vector<T, 4>& /*q*/) const {

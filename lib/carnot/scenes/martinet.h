@@ -25,6 +25,7 @@ namespace carnot::scenes {
 struct Martinet {
   static constexpr int kDof = 3;
   static constexpr int kMultipliers = 1;
+  static constexpr bool kConstantMass = true;
 
   template <class T>
   [[nodiscard]] Matrix<T, 3, 3> mass(const Vector<T, 3>& /*q*/) const {

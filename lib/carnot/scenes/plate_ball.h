@@ -32,6 +32,7 @@ namespace carnot::scenes {
 struct PlateBall {
   static constexpr int kDof = 5;
   static constexpr int kMultipliers = 3;
+  static constexpr bool kConstantMass = true;
 
   template <class T>
   [[nodiscard]] Matrix<T, 5, 5> mass(const Vector<T, 5>& /*q*/) const {

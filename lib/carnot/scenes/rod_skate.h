@@ -20,6 +20,7 @@ namespace carnot::scenes {
 struct RodSkate {
   static constexpr int kDof = 4;
   static constexpr int kMultipliers = 1;
+  static constexpr bool kConstantMass = true;
   static constexpr int kHolonomic = 1;
 
   template <class T>

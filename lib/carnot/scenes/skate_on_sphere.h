@@ -25,6 +25,7 @@ namespace carnot::scenes {
 struct SkateOnSphere {
   static constexpr int kDof = 6;
   static constexpr int kMultipliers = 1;
+  static constexpr bool kConstantMass = true;
   static constexpr int kHolonomic = 3;
 
   double beta = 1;  // turning by one radian costs as much as driving this far

@@ -15,6 +15,7 @@ namespace carnot::scenes {
 struct SphericalPendulum {
   static constexpr int kDof = 3;
   static constexpr int kMultipliers = 0;
+  static constexpr bool kConstantMass = true;
   static constexpr int kHolonomic = 1;
 
   double length = 1;

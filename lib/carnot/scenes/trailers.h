@@ -36,6 +36,7 @@ struct Trailers {
   static_assert(count >= 1);
   static constexpr int kDof = 3 + count;
   static constexpr int kMultipliers = 1 + count;
+  static constexpr bool kConstantMass = true;
 
   double trailer_weight = 0;
 

@@ -19,6 +19,7 @@ namespace carnot::scenes {
 struct Unicycle {
   static constexpr int kDof = 3;
   static constexpr int kMultipliers = 1;
+  static constexpr bool kConstantMass = true;
 
   double beta = 1;  // turning by one radian costs as much as driving this far
 

@@ -26,6 +26,7 @@ namespace carnot::scenes {
 struct Vehicle {
   static constexpr int kDof = 4;
   static constexpr int kMultipliers = 2;
+  static constexpr bool kConstantMass = true;
 
   double alpha = 1;   // inertia of the body about the front wheel, per unit mass
   double beta = 1;    // inertia of the steered wheel, per unit mass

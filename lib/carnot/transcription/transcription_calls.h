@@ -82,9 +82,19 @@ void write_entries(const VelocityConstraints<Scene>& system,
       }
     }
   };
-  const Matrix<T, Scene::kDof, Scene::kDof> mass = system.scene().mass(q);
-  for (int i = 0; i < Scene::kDof; ++i) {
-    for (int j = 0; j <= i; ++j) write(mass(i, j));
+  if constexpr (HasConstantMass<Scene>) {
+    // No matrix of Jets that are zero: starts of a vehicle take 0.9 of the time to relax for it,
+    // and 0.7 of the time to be tightened.
+    const auto mass =
+        system.scene().mass(Vector<double, Scene::kDof>(Vector<double, Scene::kDof>::Zero()));
+    for (int i = 0; i < Scene::kDof; ++i) {
+      for (int j = 0; j <= i; ++j) write(T(mass(i, j)));
+    }
+  } else {
+    const Matrix<T, Scene::kDof, Scene::kDof> mass = system.scene().mass(q);
+    for (int i = 0; i < Scene::kDof; ++i) {
+      for (int j = 0; j <= i; ++j) write(mass(i, j));
+    }
   }
   if constexpr (Scene::kMultipliers > 0) {
     const Matrix<T, Scene::kMultipliers, Scene::kDof> rows = system.scene().constraints(q);
@@ -123,8 +133,8 @@ void transcription_packed_entries(
   });
 }
 
-// Calls add(entry, weight) with what sums up to l at x, which has second derivatives. l is linear
-// in M, G and V, so that no product of Jets is formed. v and lambda are numbers N.
+// Calls add(entry, weight) with what of l at x has second derivatives. l is linear in M, G and V,
+// so that no product of Jets is formed. v and lambda are numbers N.
 template <class Scene, class T, class N, class Add>
 void add_lagrangian(const VelocityConstraints<Scene>& system,
                     const Vector<T, Scene::kDof>& x,
@@ -144,9 +154,11 @@ void add_lagrangian(const VelocityConstraints<Scene>& system,
     add(scene.gauged_lagrangian(x, velocity, multipliers), N(1));
   } else {
     if constexpr (HasPotential<Scene>) add(system.potential(x), N(-1));
-    const Matrix<T, n, n> mass = scene.mass(x);
-    for (int i = 0; i < n; ++i) {
-      for (int j = 0; j <= i; ++j) add(mass(i, j), N(j < i ? 1 : 0.5) * v[i] * v[j]);
+    if constexpr (!HasConstantMass<Scene>) {
+      const Matrix<T, n, n> mass = scene.mass(x);
+      for (int i = 0; i < n; ++i) {
+        for (int j = 0; j <= i; ++j) add(mass(i, j), N(j < i ? 1 : 0.5) * v[i] * v[j]);
+      }
     }
     if constexpr (k > 0) {
       const Matrix<T, k, n> rows = scene.constraints(x);
