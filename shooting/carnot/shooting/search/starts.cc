@@ -10,6 +10,7 @@
 #include "carnot/shooting/problem/ends.h"
 #include "carnot/shooting/problem/manifold.h"
 #include "carnot/shooting/problem/scales.h"
+#include "carnot/shooting/search/seed_words.h"
 
 namespace carnot::internal {
 namespace {
@@ -51,7 +52,7 @@ std::vector<double> amplitudes(int n, std::uint64_t seed, int i) {
     a[n + second] = number / 2 % 2 == 0 ? 1 : -1;
     return a;
   }
-  std::seed_seq sequence{seed, seed >> 32U, static_cast<std::uint64_t>(i)};
+  SeedWords sequence{seed, seed >> 32U, static_cast<std::uint64_t>(i)};
   std::mt19937_64 random(sequence);
   std::normal_distribution<double> normal;
   for (int m = 0; m < modes; ++m) {
@@ -101,15 +102,17 @@ Path wiggled_line(const BoundaryValueProblem& problem,
   path.intervals = intervals;
   path.dof = n;
   path.q.resize(static_cast<std::size_t>(intervals + 1) * n);
+  std::vector<double> sines(modes);
   for (int node = 0; node <= intervals; ++node) {
     const double s = static_cast<double>(node) / intervals;
     const bool end = node == 0 || node == intervals;
+    for (int m = 0; m < modes; ++m) sines[m] = std::sin((m + 1) * std::numbers::pi * s);
     for (int j = 0; j < n; ++j) {
       double largest = size * scales.per_metre[j];
       if (problem.dynamics.info.configuration[j].period > 0) largest = std::min(largest, most);
       double wiggle = 0;
       for (int m = 0; m < modes && !end; ++m) {
-        wiggle += a[m * n + j] * std::sin((m + 1) * std::numbers::pi * s);
+        wiggle += a[m * n + j] * sines[m];
       }
       const double line = node == intervals
                               ? problem.to[j]
