@@ -40,6 +40,19 @@ class Traveller {
     if (!rate) return std::nullopt;
     return sign_ * rate->velocity;
   }
+  // The derivative of the columns of a state; nothing where the curve is not told.
+  [[nodiscard]] std::optional<MatrixXd> rate(const MatrixXd& state) {
+    const auto along = field_.rate(state.col(0), state.col(1));
+    if (!along) return std::nullopt;
+    MatrixXd rate(state.rows(), state.cols());
+    rate.col(0) = sign_ * along->velocity;
+    rate.col(1) = sign_ * along->force;
+    if (state.cols() > 2) {
+      const MatrixXd columns = state.rightCols(state.cols() - 2);
+      rate.rightCols(columns.cols()) = field_.drive(state.col(0), rate.col(0), columns).force;
+    }
+    return rate;
+  }
   [[nodiscard]] SingularField& field() { return field_; }
 
   // One step of length h of the explicit method of order 8. False where the curve is not told; then
@@ -56,6 +69,16 @@ class Traveller {
     for (int i = 0; i < tableau_.stages(); ++i) state += tableau_.update[i] * increments[i];
     return true;
   }
+  // The same of the classical method of order 4, from the rate at the state. It takes a third of
+  // the time, and is exact enough to see whether a curve comes by: to 1e-5 in steps of an eighth.
+  [[nodiscard]] bool step_roughly(double h, const MatrixXd& first, MatrixXd& state) {
+    const auto second = rate(state + 0.5 * h * first);
+    const auto third = second ? rate(state + 0.5 * h * *second) : std::nullopt;
+    const auto fourth = third ? rate(state + h * *third) : std::nullopt;
+    if (!fourth) return false;
+    state += h / 6 * (first + 2 * (*second + *third) + *fourth);
+    return true;
+  }
   [[nodiscard]] bool run(double length, long steps, MatrixXd& state) {
     for (long i = 0; i < steps; ++i) {
       if (!step(length / static_cast<double>(steps), state)) return false;
@@ -64,19 +87,6 @@ class Traveller {
   }
 
  private:
-  std::optional<MatrixXd> rate(const MatrixXd& state) {
-    const auto along = field_.rate(state.col(0), state.col(1));
-    if (!along) return std::nullopt;
-    MatrixXd rate(state.rows(), state.cols());
-    rate.col(0) = sign_ * along->velocity;
-    rate.col(1) = sign_ * along->force;
-    if (state.cols() > 2) {
-      const MatrixXd columns = state.rightCols(state.cols() - 2);
-      rate.rightCols(columns.cols()) = field_.drive(state.col(0), rate.col(0), columns).force;
-    }
-    return rate;
-  }
-
   SingularField field_;
   Tableau<double> tableau_;
   double sign_;
@@ -93,12 +103,8 @@ MatrixXd start_of(const BoundaryValueProblem& problem, const std::vector<double>
 double miss_of(const BoundaryValueProblem& problem, const MatrixXd& state) {
   return endpoint_error(problem, state.col(0).data());
 }
-std::optional<double> approach(const BoundaryValueProblem& problem,
-                               Traveller& traveller,
-                               const MatrixXd& state) {
-  const auto velocity = traveller.velocity(state);
-  if (!velocity) return std::nullopt;
-  return (state.col(0) - vector_of(problem.to)).dot(*velocity);
+double approach(const BoundaryValueProblem& problem, const MatrixXd& state, const MatrixXd& rate) {
+  return (state.col(0) - vector_of(problem.to)).dot(rate.col(0));
 }
 
 // Corrects the length of a curve that nearly arrives, in as many steps as its end needs. False
@@ -140,29 +146,33 @@ std::optional<AbnormalCurve> follow(const BoundaryValueProblem& problem,
                                     const CurveLength& reach,
                                     double tolerance,
                                     AbnormalCurve curve) {
-  constexpr double kNear = 1e-3;  // steps; a curve that misses by more does not arrive
+  constexpr double kNear = 0.03;  // steps; a curve that misses by more does not arrive
   Traveller traveller(problem, curve.sign);
   MatrixXd state = start_of(problem, curve.covector);
-  auto before = approach(problem, traveller, state);
-  for (double length = 0; before && length < reach.longest; length += reach.step) {
+  auto rate = traveller.rate(state);
+  for (double length = 0; rate && length < reach.longest; length += reach.step) {
     const MatrixXd last = state;
-    if (!traveller.step(reach.step, state)) return std::nullopt;
-    const auto after = approach(problem, traveller, state);
-    if (!after) return std::nullopt;
-    if (*before < 0 && *after >= 0) {
-      MatrixXd nearest;
-      const auto at = [&](double part) {
-        nearest = last;
-        return traveller.step(part, nearest) ? approach(problem, traveller, nearest) : std::nullopt;
-      };
-      const double part = illinois(0.0, *before, reach.step, *after, 1e-6 * reach.step, at);
-      (void)at(part);
-      curve.length = length + part;
-      curve.steps = 1 + static_cast<long>(curve.length / reach.step);
-      const bool near = miss_of(problem, nearest) <= kNear * reach.step;
-      if (near && arrive(problem, tolerance, curve)) return curve;
-    }
-    before = after;
+    const MatrixXd last_rate = *rate;
+    if (!traveller.step_roughly(reach.step, last_rate, state)) return std::nullopt;
+    rate = traveller.rate(state);
+    if (!rate) return std::nullopt;
+    const double before = approach(problem, last, last_rate);
+    const double after = approach(problem, state, *rate);
+    if (!(before < 0 && after >= 0)) continue;
+    MatrixXd nearest;
+    const auto at = [&](double part) -> std::optional<double> {
+      nearest = last;
+      if (!traveller.step_roughly(part, last_rate, nearest)) return std::nullopt;
+      const auto there = traveller.rate(nearest);
+      if (!there) return std::nullopt;
+      return approach(problem, nearest, *there);
+    };
+    const double part = illinois(0.0, before, reach.step, after, 1e-6 * reach.step, at);
+    (void)at(part);
+    curve.length = length + part;
+    curve.steps = 1 + static_cast<long>(curve.length / reach.step);
+    const bool near = miss_of(problem, nearest) <= kNear * reach.step;
+    if (near && arrive(problem, tolerance, curve)) return curve;
   }
   return std::nullopt;
 }
