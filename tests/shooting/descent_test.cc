@@ -85,9 +85,10 @@ TEST(Descent, LeadsFromSaddlesToLess) {
   expect_ways_down_to_the_least(test::vehicle({0, 0, 0, 0}, {-1.2e-3, -1.1e-3, 7e-4, -2.3e-3}));
 }
 
-// The constraints of a control problem are redundant, and hold the multipliers too.
+// The constraints of a control problem are redundant, and hold the multipliers too. The target
+// is so far away that round-off does not decide what a saddle is; at a tenth of it it does.
 TEST(Descent, LeadsFromSaddlesOfControlProblems) {
-  expect_ways_down_to_the_least(test::bicycle({0, 1e-6, 0, 0}));
+  expect_ways_down_to_the_least(test::bicycle({0, 1e-5, 0, 0}));
 }
 
 TEST(Descent, ThereIsNoWayDownFromAMinimum) {

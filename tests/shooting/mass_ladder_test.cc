@@ -134,7 +134,8 @@ TEST(MassLadder, RefinedPathsAreOfTheProblemItself) {
   constexpr double kTightened = 1e-9;
   const BoundaryValueProblem problem = test::light_steering(kTarget, 1e-3);
   const MassLadder ladder(problem);
-  const RelaxedStart start = relaxed_start(ladder, std::nullopt, {0, 16, 0}, 0);
+  const std::vector<StartDraw> first{{0, 16}};
+  const RelaxedStart start = relaxed_starts(ladder, std::nullopt, {}, first)[0];
   ASSERT_TRUE(start.found);
   ASSERT_EQ(start.path.rung, ladder.height());
   RefinementOptions options;

@@ -17,9 +17,8 @@ namespace {
 TEST(Polish, JoinsShorterFlowsWhereTheyMagnify) {
   const BoundaryValueProblem problem = test::light_car({2.8512, 3.92792, 0.51382, -0.3369});
   const MassLadder ladder(problem);
-  RelaxedStartOptions options;
-  options.intervals = 16;
-  const RelaxedStart start = relaxed_start(ladder, std::nullopt, options, 0);
+  const std::vector<StartDraw> first{{0, 16}};
+  const RelaxedStart start = relaxed_starts(ladder, std::nullopt, {}, first)[0];
   ASSERT_TRUE(start.found);
   const Outcome outcome = polish(ladder, {}, start.path);
   ASSERT_TRUE(outcome.extremal.has_value());

@@ -4,41 +4,45 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
-#include "carnot/shooting/linear/banded_cholesky.h"
-#include "carnot/shooting/linear/norm.h"
+#include "carnot/shooting/linear/banded_lanes.h"
+#include "carnot/shooting/linear/lanes.h"
 
 namespace carnot::internal {
 namespace {
 
+static_assert(kChainLanes == kLanes);
+
 // Which numbers of a chain are unknown: those of the inner nodes, and what is free of the ends.
 class ChainEnds {
  public:
-  ChainEnds(const ChainOptions& options, int n, int intervals)
-      : inner_((intervals - 1) * n), n_(n) {
-    for (int j = 0; j < n; ++j) {
+  ChainEnds(const ChainOptions& options, const ChainShape& shape)
+      : inner_((shape.intervals - 1) * shape.n), n_(shape.n) {
+    for (int j = 0; j < n_; ++j) {
       if (!options.free_first.empty() && options.free_first[j]) first_.push_back(j);
-      if (!options.free_last.empty() && options.free_last[j]) last_.push_back(n + inner_ + j);
+      if (!options.free_last.empty() && options.free_last[j]) last_.push_back(n_ + inner_ + j);
     }
   }
 
-  [[nodiscard]] bool free() const { return !first_.empty() || !last_.empty(); }
-  [[nodiscard]] int first() const { return static_cast<int>(first_.size()); }
-  [[nodiscard]] int inner() const { return inner_; }
-  [[nodiscard]] int size() const { return first() + inner_ + static_cast<int>(last_.size()); }
+  [[nodiscard]] int size() const {
+    return static_cast<int>(first_.size()) + inner_ + static_cast<int>(last_.size());
+  }
   // Where unknown `j` stands in the chain,
   [[nodiscard]] int place(int j) const {
-    if (j < first()) return first_[j];
-    j -= first();
+    const int first = static_cast<int>(first_.size());
+    if (j < first) return first_[j];
+    j -= first;
     return j < inner_ ? n_ + j : last_[j - inner_];
   }
   // and which unknown stands at `place`; -1: none.
   [[nodiscard]] int unknown(int place) const {
-    if (place >= n_ && place < n_ + inner_) return first() + place - n_;
+    const int first = static_cast<int>(first_.size());
+    if (place >= n_ && place < n_ + inner_) return first + place - n_;
     const std::vector<int>& end = place < n_ ? first_ : last_;
     const auto found = std::find(end.begin(), end.end(), place);
     if (found == end.end()) return -1;
-    return static_cast<int>(found - end.begin()) + (place < n_ ? 0 : first() + inner_);
+    return static_cast<int>(found - end.begin()) + (place < n_ ? 0 : first + inner_);
   }
 
  private:
@@ -48,172 +52,114 @@ class ChainEnds {
   int n_;
 };
 
-// |r|^2 / 2 along a chain, its gradient J'r and J'J.
-class Chain {
- public:
-  Chain(const ChainResiduals& residuals_of,
-        int residuals,
-        int n,
-        const ChainOptions& options,
-        std::size_t nodes)
-      : residuals_of_(residuals_of),
-        n_(n),
-        intervals_(static_cast<int>(nodes) - 1),
-        ends_(options, n, intervals_),
-        size_(ends_.size()),
-        normal_(size_, 2 * n - 1),
-        gradient_(size_),
-        r_(static_cast<std::size_t>(residuals) * kChainLanes),
-        jacobian_(r_.size() * 2 * n),
-        products_(static_cast<std::size_t>(2 * n) * 2 * n * kChainLanes),
-        slopes_(static_cast<std::size_t>(2 * n) * kChainLanes) {}
+// |r|^2 / 2 along chains, its gradient J'r and J'J, at nodes of their own.
+struct Model {
+  Model(int nodes, int size, int width) : x(nodes), gradient(size), normal(size, width), cost() {}
 
-  [[nodiscard]] int size() const { return size_; }
-  // x + step.
-  void move(const std::vector<double>& x,
-            const std::vector<double>& step,
-            std::vector<double>& to) const {
-    const double* own = &step[ends_.first()];
-    for (int j = 0; j < ends_.inner(); ++j) to[n_ + j] = x[n_ + j] + own[j];
-    for (int j = 0; ends_.free() && j < size_; ++j)
-      to[ends_.place(j)] = x[ends_.place(j)] + step[j];
+  std::vector<Lanes> x;
+  std::vector<Lanes> gradient;
+  BandedLanes normal;
+  Lanes cost;  // infinite where there are no residuals
+
+  // Becomes `other` in the lanes of the mask.
+  void take(const LanePack::Mask& mask, const Model& other) {
+    take_lanes(mask, other.x, x);
+    take_lanes(mask, other.gradient, gradient);
+    normal.take(mask, other.normal);
+    cost.set(select(mask, other.cost.pack(), cost.pack()));
   }
-  // |x| of the nodes that move.
-  [[nodiscard]] double size_of(const std::vector<double>& x) const {
-    const double inner = norm({&x[n_], static_cast<std::size_t>(ends_.inner())});
-    if (!ends_.free()) return inner;
-    double square = inner * inner;
-    for (int j = 0; j < size_; ++j) {
-      const bool at_end = j < ends_.first() || j >= ends_.first() + ends_.inner();
-      if (at_end) square += x[ends_.place(j)] * x[ends_.place(j)];
-    }
-    return std::sqrt(square);
-  }
-
-  // Infinite where there are no residuals.
-  [[nodiscard]] double cost(const std::vector<double>& x) {
-    double sum = 0;
-    for (int i = 0; i < intervals_; i += kChainLanes) {
-      const int count = std::min(kChainLanes, intervals_ - i);
-      if (!residuals_of_(i, count, &x[i * n_], r_.data(), nullptr)) return kNone;
-      sum += sum_of_squares(count);
-    }
-    return std::isfinite(sum) ? 0.5 * sum : kNone;
-  }
-
-  // The same with derivatives.
-  [[nodiscard]] double linearise(const std::vector<double>& x) {
-    normal_.clear();
-    std::fill(gradient_.begin(), gradient_.end(), 0.0);
-    double sum = 0;
-    for (int i = 0; i < intervals_; i += kChainLanes) {
-      const int count = std::min(kChainLanes, intervals_ - i);
-      if (!residuals_of_(i, count, &x[i * n_], r_.data(), jacobian_.data())) return kNone;
-      sum += sum_of_squares(count);
-      multiply();
-      for (int l = 0; l < count; ++l) add(i + l, l);
-    }
-    return std::isfinite(sum) ? 0.5 * sum : kNone;
-  }
-
-  [[nodiscard]] const BandedCholesky& normal() const { return normal_; }
-  [[nodiscard]] double diagonal(int j) { return normal_(j, j); }
-  [[nodiscard]] const std::vector<double>& gradient() const { return gradient_; }
-
- private:
-  static constexpr double kNone = std::numeric_limits<double>::infinity();
-
-  // Of the first `count` intervals that stand side by side.
-  [[nodiscard]] double sum_of_squares(int count) const {
-    double sum = 0;
-    for (std::size_t r = 0; r < r_.size(); r += kChainLanes) {
-      for (int l = 0; l < count; ++l) sum += r_[r + l] * r_[r + l];
-    }
-    return sum;
-  }
-
-  // J'r and J'J of the intervals that stand side by side.
-  void multiply() {
-    const int columns = 2 * n_;
-    const std::size_t rows = r_.size() / kChainLanes;
-    const auto entry = [&](std::size_t row, int column) {
-      return &jacobian_[(row * columns + column) * kChainLanes];
-    };
-    // Lane by lane in memory of its own, so that the compiler may keep the sums in registers.
-    const auto sum_products = [&](const auto& left, const auto& right, double* to) {
-      std::array<double, kChainLanes> sums{};
-      for (std::size_t row = 0; row < rows; ++row) {
-        const double* x = left(row);
-        const double* y = right(row);
-        for (int l = 0; l < kChainLanes; ++l) sums[l] += x[l] * y[l];
-      }
-      std::copy(sums.begin(), sums.end(), to);
-    };
-    for (int a = 0; a < columns; ++a) {
-      const auto column = [&](std::size_t row) { return entry(row, a); };
-      sum_products(
-          column,
-          [&](std::size_t row) { return &r_[row * kChainLanes]; },
-          &slopes_[a * kChainLanes]);
-      for (int b = a; b < columns; ++b) {
-        sum_products(
-            column,
-            [&](std::size_t row) { return entry(row, b); },
-            &products_[(a * columns + b) * kChainLanes]);
-      }
-    }
-  }
-
-  // What interval i, number l of those side by side, adds to the normal equations.
-  void add(int i, int l) {
-    const int first = i == 0 ? n_ : 0;  // of its 2n arguments that are free
-    const int last = i + 1 == intervals_ ? n_ : 2 * n_;
-    const int shift = ends_.first() + (i - 1) * n_;
-    if (ends_.free() && (i == 0 || i + 1 == intervals_)) return add_beside_end(i, l);
-    for (int a = first; a < last; ++a) {
-      gradient_[shift + a] += slopes_[a * kChainLanes + l];
-      double* normal = &normal_(shift + a, shift + a);
-      const double* products = &products_[(a * 2 * n_ + a) * kChainLanes + l];
-      for (int b = 0; b < last - a; ++b) normal[b] += products[b * kChainLanes];
-    }
-  }
-
-  // The same where a node may be free in part.
-  void add_beside_end(int i, int l) {
-    for (int a = 0; a < 2 * n_; ++a) {
-      const int at = ends_.unknown(i * n_ + a);
-      if (at < 0) continue;
-      gradient_[at] += slopes_[a * kChainLanes + l];
-      for (int b = a; b < 2 * n_; ++b) {
-        const int other = ends_.unknown(i * n_ + b);
-        if (other >= 0) normal_(at, other) += products_[(a * 2 * n_ + b) * kChainLanes + l];
-      }
-    }
-  }
-
-  const ChainResiduals& residuals_of_;
-  int n_;
-  int intervals_;
-  ChainEnds ends_;
-  int size_;
-  BandedCholesky normal_;
-  std::vector<double> gradient_;
-  // Of kChainLanes intervals side by side: r, J, J'J and J'r.
-  std::vector<double> r_;
-  std::vector<double> jacobian_;
-  std::vector<double> products_;
-  std::vector<double> slopes_;
 };
 
-double largest(const std::vector<double>& x) {
-  double most = 0;
-  for (const double value : x) most = std::max(most, std::abs(value));
-  return most;
-}
+// Sets models at their nodes.
+class Chains {
+ public:
+  Chains(const ChainResiduals& residuals_of, const ChainShape& shape, const ChainOptions& options)
+      : residuals_of_(residuals_of),
+        shape_(shape),
+        ends_(options, shape),
+        residual_(shape.residuals),
+        jacobian_(static_cast<std::size_t>(shape.residuals) * 2 * shape.n + kTogether) {
+    for (int i = 0; i < (shape.intervals + 1) * shape.n; ++i) unknown_.push_back(ends_.unknown(i));
+    for (int j = 0; j < ends_.size(); ++j) place_.push_back(ends_.place(j));
+  }
+
+  [[nodiscard]] int size() const { return ends_.size(); }
+  [[nodiscard]] Model model() const {
+    return {(shape_.intervals + 1) * shape_.n, size(), 2 * shape_.n};
+  }
+  // Where unknown `j` stands in the chain.
+  [[nodiscard]] int place(int j) const { return place_[j]; }
+
+  // Sets the model at its nodes.
+  void linearise(Model& model) {
+    const int n = shape_.n;
+    LanePack sum(0);
+    for (int i = 0; i < shape_.intervals; ++i) {
+      residuals_of_(i, model.x[i * n].data(), residual_[0].data(), jacobian_[0].data());
+      LanePack own(0);
+      for (const Lanes& r : residual_) own += r.pack() * r.pack();
+      sum += own;
+      for (int a = 0; a < 2 * n; ++a) {
+        if (unknown_[i * n + a] >= 0) add_column(i, a, model);
+      }
+    }
+    (LanePack(0.5) * sum).store(model.cost.data());
+    for (double& cost : model.cost.at) {
+      if (!std::isfinite(cost)) cost = std::numeric_limits<double>::infinity();
+    }
+  }
+
+ private:
+  // Columns whose sums stay in registers.
+  static constexpr int kTogether = 4;
+
+  // What column a of the Jacobian of interval i adds to the normal equations: products with those
+  // that are not before it. Each interval is the first to write what has to do with its last node.
+  void add_column(int i, int a, Model& model) const {
+    const int n = shape_.n;
+    const int* const unknown = &unknown_[i * n];
+    const int known = i == 0 ? 0 : n;  // columns whose sums have begun
+    const int at = unknown[a];
+    Lanes* const to = &model.normal(at, at);
+    for (int first = a; first < 2 * n; first += kTogether) {
+      LanePack slope(0);
+      std::array<LanePack, kTogether> sums;
+#pragma GCC unroll 8
+      for (LanePack& x : sums) x = LanePack(0);
+      const Lanes* own = &jacobian_[a];
+      const Lanes* others = &jacobian_[first];
+      for (int row = 0; row < shape_.residuals; ++row) {
+        const LanePack x = own->pack();
+        slope += x * residual_[row].pack();
+#pragma GCC unroll 8
+        for (int b = 0; b < kTogether; ++b) sums[b] += x * others[b].pack();
+        own += 2 * n;
+        others += 2 * n;
+      }
+      if (first == a) put(slope, a < known, model.gradient[at]);
+#pragma GCC unroll 8
+      for (int b = 0; b < kTogether; ++b) {
+        const int column = first + b;
+        if (column < 2 * n && unknown[column] >= 0) {
+          put(sums[b], column < known, to[unknown[column] - at]);
+        }
+      }
+    }
+  }
+  static void put(const LanePack& x, bool begun, Lanes& to) { to.set(begun ? to.pack() + x : x); }
+
+  const ChainResiduals& residuals_of_;
+  ChainShape shape_;
+  ChainEnds ends_;
+  std::vector<int> unknown_;
+  std::vector<int> place_;
+  std::vector<Lanes> residual_;
+  std::vector<Lanes> jacobian_;
+};
 
 // How far the linear model is trusted.
 struct TrustRegion {
-  double radius;
+  double radius = 0;
   double shrink = 2;
 
   // After a step whose true gain was `ratio` of the predicted one.
@@ -228,89 +174,209 @@ struct TrustRegion {
   }
 };
 
-// Squares of the units of the columns.
-std::vector<double> units2(Chain& chain) {
-  std::vector<double> units(chain.size());
-  for (int j = 0; j < chain.size(); ++j) {
-    const double unit = 1 / (1 + std::sqrt(chain.diagonal(j)));
-    units[j] = unit * unit;
-  }
-  return units;
-}
+// Where the chain of a lane stands.
+struct Lane {
+  bool busy = false;   // there is one,
+  bool fresh = false;  // and nothing is known of it yet
+  bool moved = false;  // the trial is a step away
+  int iterations = 0;
+  TrustRegion region;
+};
 
-// (J'J + D) step = -J'r.
-class DampedStep {
+class Minimisation {
  public:
-  explicit DampedStep(const Chain& chain) : damped_(chain.normal()), damping_(chain.size()) {}
+  Minimisation(const ChainResiduals& residuals_of,
+               const ChainShape& shape,
+               const ChainOptions& options,
+               const NextChain& next)
+      : options_(options),
+        next_(next),
+        chains_(residuals_of, shape, options),
+        current_(chains_.model()),
+        trial_(chains_.model()),
+        damped_(current_.normal),
+        damping_(chains_.size()),
+        unit2_(chains_.size()),
+        step_(chains_.size()),
+        nodes_(current_.x.size()) {}
 
-  // Returns the gain that the linear model predicts; 0 where it cannot tell.
-  double solve(Chain& chain,
-               const std::vector<double>& unit2,
-               double radius,
-               std::vector<double>& step) {
-    constexpr double kLeastDiagonal = 1e-6;
-    constexpr double kLargestDiagonal = 1e32;
-    damped_ = chain.normal();
-    for (int j = 0; j < chain.size(); ++j) {
-      const double scaled = chain.diagonal(j) * unit2[j];
-      damping_[j] = std::clamp(scaled, kLeastDiagonal, kLargestDiagonal) / (radius * unit2[j]);
-      damped_(j, j) += damping_[j];
-      step[j] = -chain.gradient()[j];
+  void run() {
+    for (int l = 0; l < kLanes; ++l) take_next(l);
+    fill_idle();
+    trial_.x = current_.x;
+    while (any_busy()) {
+      chains_.linearise(trial_);
+      judge();
+      set_units();
+      for (int l = 0; l < kLanes; ++l) {
+        if (lanes_[l].busy && is_done(l)) take_next(l);
+      }
+      if (any_busy()) step();
     }
-    if (!damped_.factor()) return 0;
-    damped_.substitute(step);
-    double gain = 0;
-    for (int j = 0; j < chain.size(); ++j) {
-      gain += 0.5 * step[j] * (damping_[j] * step[j] - chain.gradient()[j]);
-    }
-    return std::isfinite(gain) ? gain : 0;
   }
 
  private:
-  BandedCholesky damped_;
-  std::vector<double> damping_;
+  [[nodiscard]] bool any_busy() const {
+    return std::any_of(lanes_.begin(), lanes_.end(), [](const Lane& lane) { return lane.busy; });
+  }
+
+  // Hands over what lane l has come to, and takes the next chain.
+  void take_next(int l) {
+    for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i] = current_.x[i].at[l];
+    const double radius = next_(l, lanes_[l].iterations, nodes_);
+    lanes_[l] = {};
+    lanes_[l].busy = lanes_[l].fresh = radius > 0;
+    lanes_[l].region.radius = radius;
+    for (std::size_t i = 0; lanes_[l].busy && i < nodes_.size(); ++i) {
+      current_.x[i].at[l] = nodes_[i];
+    }
+  }
+
+  // Lanes that never have a chain repeat another one: no time is lost on numbers without sense.
+  void fill_idle() {
+    const auto busy =
+        std::find_if(lanes_.begin(), lanes_.end(), [](const Lane& lane) { return lane.busy; });
+    if (busy == lanes_.end()) return;
+    const auto from = busy - lanes_.begin();
+    for (int l = 0; l < kLanes; ++l) {
+      for (Lanes& x : current_.x) {
+        if (!lanes_[l].busy) x.at[l] = x.at[from];
+      }
+    }
+  }
+
+  // Takes the trials that gain enough.
+  void judge() {
+    constexpr double kLeastRatio = 1e-3;  // of true to predicted gain
+    ChosenLanes chosen;
+    bool all = true;
+    for (int l = 0; l < kLanes; ++l) {
+      Lane& lane = lanes_[l];
+      finished_[l] = false;
+      chosen[l] = lane.fresh;
+      if (lane.busy && lane.moved) {
+        const double cost = current_.cost.at[l];
+        const double gain = cost - trial_.cost.at[l];
+        const double size = std::sqrt(size2_.at[l]) + options_.step_tolerance;
+        finished_[l] = std::abs(gain) <= options_.function_tolerance * cost ||
+                       std::sqrt(step2_.at[l]) <= options_.step_tolerance * size;
+        chosen[l] = gain > kLeastRatio * predicted_.at[l];
+        if (chosen[l]) {
+          lane.region.accept(gain / predicted_.at[l]);
+        } else {
+          lane.region.reject();
+        }
+      }
+      all = all && (chosen[l] || !lane.busy);
+    }
+    if (all) {
+      std::swap(current_, trial_);
+    } else {
+      current_.take(chosen.mask(), trial_);
+    }
+  }
+
+  // Squares of the units of the columns, where a chain begins.
+  void set_units() {
+    ChosenLanes fresh;
+    bool any = false;
+    for (int l = 0; l < kLanes; ++l) any = (fresh[l] = lanes_[l].fresh) || any;
+    if (!any) return;
+    const LanePack::Mask mask = fresh.mask();
+    for (int j = 0; j < chains_.size(); ++j) {
+      const LanePack unit = LanePack(1) / (LanePack(1) + sqrt(current_.normal(j, j).pack()));
+      unit2_[j].set(select(mask, unit * unit, unit2_[j].pack()));
+    }
+  }
+
+  // Whether the chain of a lane is minimised, or cannot be.
+  [[nodiscard]] bool is_done(int l) {
+    Lane& lane = lanes_[l];
+    lane.fresh = false;
+    if (finished_[l] || lane.iterations >= options_.max_iterations) return true;
+    if (chains_.size() == 0 || !std::isfinite(current_.cost.at[l])) return true;
+    double largest = 0;
+    for (const Lanes& slope : current_.gradient) {
+      largest = std::max(largest, std::abs(slope.at[l]));
+    }
+    return !(largest > options_.gradient_tolerance);
+  }
+
+  // (J'J + D) step = -J'r in all lanes, and the gain that the linear model predicts.
+  void step() {
+    constexpr double kLeastDiagonal = 1e-6;
+    constexpr double kLargestDiagonal = 1e32;
+    Lanes radius;
+    for (int l = 0; l < kLanes; ++l) radius.at[l] = lanes_[l].fresh ? 1 : lanes_[l].region.radius;
+    for (int j = 0; j < chains_.size(); ++j) {
+      const LanePack unit2 = unit2_[j].pack();
+      const LanePack scaled = current_.normal(j, j).pack() * unit2;
+      const LanePack bounded =
+          min(max(scaled, LanePack(kLeastDiagonal)), LanePack(kLargestDiagonal));
+      damping_[j].set(bounded / (radius.pack() * unit2));
+      step_[j].set(-current_.gradient[j].pack());
+    }
+    const Lanes definite(damped_.factor(current_.normal, damping_));
+    damped_.substitute(step_);
+    LanePack gain(0);
+    for (int j = 0; j < chains_.size(); ++j) {
+      const LanePack x = step_[j].pack();
+      gain += LanePack(0.5) * x * (damping_[j].pack() * x - current_.gradient[j].pack());
+    }
+    predicted_.set(gain);
+    ChosenLanes moved;
+    for (int l = 0; l < kLanes; ++l) {
+      Lane& lane = lanes_[l];
+      lane.moved = false;
+      if (!lane.busy || lane.fresh) continue;
+      ++lane.iterations;
+      const double predicted = predicted_.at[l];
+      moved[l] = lane.moved = definite.at[l] > 0 && predicted > 0 && std::isfinite(predicted);
+      if (!lane.moved) lane.region.reject();
+    }
+    move(moved.mask());
+  }
+
+  void move(const LanePack::Mask& moved) {
+    LanePack step2(0);
+    LanePack size2(0);
+    trial_.x = current_.x;
+    for (int j = 0; j < chains_.size(); ++j) {
+      const int at = chains_.place(j);
+      const LanePack x = current_.x[at].pack();
+      const LanePack step = select(moved, step_[j].pack(), LanePack(0));
+      step2 += step * step;
+      size2 += x * x;
+      trial_.x[at].set(x + step);
+    }
+    step2_.set(step2);
+    size2_.set(size2);
+  }
+
+  const ChainOptions& options_;
+  const NextChain& next_;
+  Chains chains_;
+  std::array<Lane, kLanes> lanes_{};
+  Model current_;
+  Model trial_;
+  BandedLanes damped_;
+  std::vector<Lanes> damping_;
+  std::vector<Lanes> unit2_;
+  std::vector<Lanes> step_;
+  Lanes predicted_;
+  Lanes step2_;  // squares of |step| and of |x|, of what moves
+  Lanes size2_;
+  std::array<bool, kLanes> finished_{};  // the last step changed little
+  std::vector<double> nodes_;            // of one lane
 };
 
 }  // namespace
 
-int minimise_chain(const ChainResiduals& residuals_of,
-                   int residuals,
-                   int n,
-                   const ChainOptions& options,
-                   std::vector<double>& x) {
-  constexpr double kLeastRatio = 1e-3;  // of true to predicted gain
-  Chain chain(residuals_of, residuals, n, options, x.size() / n);
-  double cost = chain.linearise(x);
-  if (chain.size() == 0 || !std::isfinite(cost)) return 0;
-  const std::vector<double> unit2 = units2(chain);
-  DampedStep damped(chain);
-  std::vector<double> step(chain.size());
-  std::vector<double> trial = x;
-  TrustRegion region{options.radius};
-  int iterations = 0;
-  bool done = false;
-  while (!done && iterations < options.max_iterations && std::isfinite(cost) &&
-         largest(chain.gradient()) > options.gradient_tolerance) {
-    ++iterations;
-    const double predicted = damped.solve(chain, unit2, region.radius, step);
-    if (!(predicted > 0)) {
-      region.reject();
-      continue;
-    }
-    chain.move(x, step, trial);
-    const double gain = cost - chain.cost(trial);
-    const double size = chain.size_of(x) + options.step_tolerance;
-    done = std::abs(gain) <= options.function_tolerance * cost ||
-           norm(step) <= options.step_tolerance * size;
-    if (!(gain > kLeastRatio * predicted)) {
-      region.reject();
-      continue;
-    }
-    region.accept(gain / predicted);
-    x = trial;
-    if (!done) cost = chain.linearise(x);
-  }
-  return iterations;
+void minimise_chains(const ChainResiduals& residuals_of,
+                     const ChainShape& shape,
+                     const ChainOptions& options,
+                     const NextChain& next) {
+  Minimisation(residuals_of, shape, options, next).run();
 }
 
 }  // namespace carnot::internal

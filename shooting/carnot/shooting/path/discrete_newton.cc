@@ -5,6 +5,7 @@
 
 #include "carnot/shooting/linear/norm.h"
 #include "carnot/shooting/path/discrete_equations.h"
+#include "carnot/shooting/path/newton_step.h"
 
 namespace carnot::internal {
 
@@ -18,9 +19,6 @@ std::vector<double> residual_of(const BoundaryValueProblem& problem, const Path&
 DiscreteNewton tighten(const BoundaryValueProblem& problem,
                        const DiscreteNewtonOptions& options,
                        Path& path) {
-  // A residual that no step makes smaller is round-off up to here: that of coordinates far from
-  // zero, magnified near singular frames.
-  constexpr double kRoundedOff = 1e-6;
   const double h = problem.time / path.intervals;
   DiscreteEquations equations(problem, path.intervals, options.drift);
   BandedLu matrix = equations.matrix();
@@ -36,10 +34,10 @@ DiscreteNewton tighten(const BoundaryValueProblem& problem,
   std::vector<double> simplified;
   Path trial = path;
   const bool walled = in_one_chart(problem.dynamics, path);
-  constexpr double kShortestStep = 1.0 / 64;
   DiscreteNewton result;
   int damped = 0;
-  const double scale = evaluate(path, &matrix);
+  const double largest = evaluate(path, &matrix);
+  const double scale = options.scale > 0 ? options.scale : largest;
   result.residual = norm(residual);
   const auto is_solution = [&] { return result.residual <= options.tolerance * scale; };
   while (result.iterations < options.max_iterations && std::isfinite(result.residual)) {
@@ -58,10 +56,10 @@ DiscreteNewton tighten(const BoundaryValueProblem& problem,
       if (result.left_chart) continue;
       evaluate(trial, nullptr);
       reached = norm(residual);
-      if (reached < (1 - 0.1 * step) * result.residual) break;
+      if (makes_fall(step, result.residual, reached)) break;
       simplified = residual;
       matrix.substitute(simplified);
-      if (norm(simplified) < (1 - 0.25 * step) * length) break;
+      if (makes_shorter(step, length, norm(simplified))) break;
     }
     if (step < 1 && ++damped > options.most_damped) break;
     if (step < kShortestStep) {

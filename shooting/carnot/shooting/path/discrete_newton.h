@@ -14,7 +14,8 @@ namespace carnot::internal {
 
 struct DiscreteNewtonOptions {
   int max_iterations = 20;
-  double tolerance = 1e-9;  // residual relative to its size at the first iterate's momenta
+  double tolerance = 1e-9;  // residual relative to the momenta of the first iterate,
+  double scale = 0;         // or to this where it is not zero
   int most_damped = 1000;   // steps that are halved, before it gives up
   double drift = 1;         // see path_lagrangian.h
   // The equations are to leave this share of these numbers; null: zero.

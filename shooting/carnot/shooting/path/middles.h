@@ -30,6 +30,16 @@ class Middles {
     }
   }
 
+  // Of one interval each of as many paths, whose nodes i and i + 1 stand side by side.
+  void set_lanes(const double* nodes, double h) {
+    const double per_h = 1 / h;
+    const double* const next = nodes + q_.size();
+    for (std::size_t i = 0; i < q_.size(); ++i) {
+      q_[i] = 0.5 * (nodes[i] + next[i]);
+      v_[i] = (next[i] - nodes[i]) * per_h;
+    }
+  }
+
   [[nodiscard]] const std::vector<double>& q() const { return q_; }
   // The velocities there.
   [[nodiscard]] const std::vector<double>& v() const { return v_; }

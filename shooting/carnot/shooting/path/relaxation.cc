@@ -2,137 +2,21 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
+#include <limits>
 #include <span>
+#include <vector>
 
 #include "carnot/shooting/linear/chain_least_squares.h"
+#include "carnot/shooting/linear/lanes.h"
 #include "carnot/shooting/path/middles.h"
 #include "carnot/shooting/problem/walls.h"
 
 namespace carnot::internal {
 namespace {
 
-// What all intervals share.
-struct Transcription {
-  const Dynamics& dynamics;
-  double h;
-  double rho;
-  double ceiling;  // c > V; used where the scene has a potential
-  bool potential;
-  bool walled;  // the path is in one chart, and kept there
-  const Walls& walls;
-  const RelaxationOptions& options;
-
-  [[nodiscard]] int terms() const {
-    return dynamics.dof + dynamics.transcribed + (potential ? 1 : 0);
-  }
-  [[nodiscard]] int residuals() const { return terms() + walls.size(); }
-};
-
-constexpr int kLanes = Middles::kLanes;
-static_assert(kLanes == kChainLanes);
-
-// Residuals sqrt(h) r, sqrt(h rho) (G v - lambda / rho) and, with a potential, sqrt(2 h (c - V)) of
-// kLanes intervals side by side; keeps room for what it needs on the way.
-class Intervals {
- public:
-  explicit Intervals(const Transcription& shared)
-      : shared_(shared),
-        middles_(shared.dynamics.dof),
-        terms_((shared.dynamics.dof + shared.dynamics.transcribed + 1) * kLanes),
-        derivative_(terms_.size() * 2 * shared.dynamics.dof),
-        at_(shared.dynamics.dof),
-        s_(shared.walls.size()),
-        gradients_(s_.size() * shared.dynamics.dof) {}
-
-  // At the nodes from q on, with the multipliers from lambda on; see chain_least_squares.h.
-  bool evaluate(
-      int count, const double* lambda, const double* q, double* residuals, double* jacobian) {
-    const int n = shared_.dynamics.dof;
-    for (int l = 0; shared_.walled && l < count; ++l) {
-      if (!same_chart(shared_.dynamics, q + l * n, q + (l + 1) * n)) return false;
-    }
-    middles_.set(q, count, shared_.h);
-    const auto derivative = jacobian != nullptr ? derivative_ : std::span<double>();
-    if (!shared_.dynamics.midpoints(middles_.q(), middles_.v(), terms_, derivative)) return false;
-    const double per_h = 1 / shared_.h;
-    Row sums{};  // zero where all numbers are finite
-    for (int row = 0; row < shared_.terms(); ++row) {
-      const Row weights = scale(row, count, lambda, residuals + row * kLanes);
-      for (int l = 0; l < kLanes; ++l) sums[l] += 0 * (weights[l] + residuals[row * kLanes + l]);
-      if (jacobian == nullptr) continue;
-      const double* d = &derivative[row * 2 * n * kLanes];
-      double* to = jacobian + row * 2 * n * kLanes;
-      for (int i = 0; i < n; ++i) {
-        for (int l = 0; l < kLanes; ++l) {
-          const double by_q = 0.5 * weights[l] * d[i * kLanes + l];
-          const double by_v = weights[l] * per_h * d[(n + i) * kLanes + l];
-          to[i * kLanes + l] = by_q - by_v;
-          to[(n + i) * kLanes + l] = by_q + by_v;
-        }
-      }
-    }
-    if (sums != Row{}) return false;
-    for (int l = 0; shared_.walls.size() > 0 && l < count; ++l) add_walls(l, residuals, jacobian);
-    return true;
-  }
-
- private:
-  using Row = std::array<double, kLanes>;
-
-  // Sets residual `row` of all intervals from the terms, returns d residual / d term.
-  Row scale(int row, int count, const double* lambda, double* residuals) const {
-    const int n = shared_.dynamics.dof;
-    const int k = shared_.dynamics.transcribed;
-    const double* terms = &terms_[row * kLanes];
-    Row weights;
-    if (row < n) {
-      weights.fill(std::sqrt(shared_.h));
-      for (int l = 0; l < kLanes; ++l) residuals[l] = weights[l] * terms[l];
-    } else if (row < n + k) {
-      const double per_rho = 1 / shared_.rho;
-      weights.fill(std::sqrt(shared_.h * shared_.rho));
-      for (int l = 0; l < kLanes; ++l) {
-        const double multiplier = lambda[std::min(l, count - 1) * k + row - n];
-        residuals[l] = weights[l] * (terms[l] - multiplier * per_rho);
-      }
-    } else {
-      for (int l = 0; l < kLanes; ++l) {
-        residuals[l] = std::sqrt(2 * shared_.h * (shared_.ceiling - terms[l]));
-        weights[l] = -shared_.h / residuals[l];
-      }
-    }
-    return weights;
-  }
-
-  // The last residuals of interval l: what is beyond each wall.
-  void add_walls(int l, double* residuals, double* jacobian) {
-    const int n = shared_.dynamics.dof;
-    for (int j = 0; j < n; ++j) at_[j] = middles_.q()[j * kLanes + l];
-    shared_.walls.evaluate(
-        at_.data(), s_.data(), jacobian != nullptr ? gradients_.data() : nullptr, nullptr);
-    for (int w = 0; w < shared_.walls.size(); ++w) {
-      const int row = shared_.terms() + w;
-      const double weight =
-          std::sqrt(shared_.h * shared_.options.wall_rate) / shared_.options.wall_sizes[w];
-      const bool beyond = s_[w] < 0;
-      residuals[row * kLanes + l] = beyond ? weight * s_[w] : 0;
-      if (jacobian == nullptr) continue;
-      double* to = jacobian + row * 2 * n * kLanes + l;
-      for (int i = 0; i < n; ++i) {
-        to[i * kLanes] = to[(n + i) * kLanes] = beyond ? 0.5 * weight * gradients_[w * n + i] : 0;
-      }
-    }
-  }
-
-  const Transcription& shared_;
-  Middles middles_;
-  std::vector<double> terms_;
-  std::vector<double> derivative_;
-  std::vector<double> at_;
-  std::vector<double> s_;
-  std::vector<double> gradients_;
-};
+static_assert(Middles::kLanes == kLanes);
 
 // Reads the terms of all intervals of a path, up to the first that cannot be evaluated.
 struct PathTerms {
@@ -184,51 +68,227 @@ PathTerms terms_of(const Dynamics& dynamics, double h, const Path& path) {
   return result;
 }
 
+// What the residuals of a path are made with.
+struct Pull {
+  RelaxationTask* task = nullptr;
+  int outer = 0;  // how often the multipliers were updated
+  double rho = 0;
+  double ceiling = 0;      // c > V; used where the scene has a potential
+  bool potential = false;  // V is not zero
+  bool walled = false;     // the path is in one chart, and kept there
+};
+
+// Residuals sqrt(h) r, sqrt(h rho) (G v - lambda / rho) and, with a potential, sqrt(2 h (c - V)) of
+// one interval of kLanes paths side by side; keeps room for what it needs on the way.
+class Intervals {
+ public:
+  Intervals(const BoundaryValueProblem& problem, int intervals, bool potential, const Walls& walls)
+      : dynamics_(problem.dynamics),
+        h_(problem.time / intervals),
+        potential_(potential),
+        walls_(walls),
+        middles_(dynamics_.dof),
+        terms_((dynamics_.dof + dynamics_.transcribed + 1) * kLanes),
+        derivative_(terms_.size() * 2 * dynamics_.dof),
+        left_(dynamics_.dof),
+        right_(dynamics_.dof),
+        s_(walls.size()),
+        gradients_(s_.size() * dynamics_.dof),
+        shifts_(static_cast<std::size_t>(intervals) * dynamics_.transcribed) {}
+
+  [[nodiscard]] int residuals() const { return terms() + walls_.size(); }
+
+  // The residuals of lane l are those of this pull from now on.
+  void set_lane(int l, const Pull& pull) {
+    pulls_[l] = &pull;
+    weight_.at[l] = std::sqrt(h_ * pull.rho);
+    ceiling_.at[l] = pull.ceiling;
+    counts_.at[l] = pull.potential ? 1 : 0;
+    const std::vector<double>& lambda = pull.task->path->lambda;
+    for (std::size_t i = 0; i < lambda.size(); ++i) shifts_[i].at[l] = lambda[i] / pull.rho;
+  }
+
+  // Of interval i; see chain_least_squares.h.
+  void evaluate(int i, const double* nodes, double* residuals, double* jacobian) {
+    const int n = dynamics_.dof;
+    middles_.set_lanes(nodes, h_);
+    // A path whose terms do not exist has no numbers there, which its cost tells.
+    (void)dynamics_.midpoints(middles_.q(), middles_.v(), terms_, derivative_);
+    const LanePack per_h(1 / h_);
+    for (int row = 0; row < terms(); ++row) {
+      const LanePack weight = scale(i, row, residuals + row * kLanes);
+      const double* d = &derivative_[row * 2 * n * kLanes];
+      double* to = jacobian + row * 2 * n * kLanes;
+      for (int j = 0; j < n; ++j) {
+        const LanePack by_q = LanePack(0.5) * weight * LanePack::load(d + j * kLanes);
+        const LanePack by_v = weight * per_h * LanePack::load(d + (n + j) * kLanes);
+        (by_q - by_v).store(to + j * kLanes);
+        (by_q + by_v).store(to + (n + j) * kLanes);
+      }
+    }
+    for (int l = 0; l < kLanes; ++l) {
+      if (pulls_[l] == nullptr) continue;
+      if (pulls_[l]->walled && leaves_chart(l, nodes)) {
+        residuals[l] = std::numeric_limits<double>::quiet_NaN();
+      }
+      if (walls_.size() > 0) add_walls(pulls_[l]->task->options, l, residuals, jacobian);
+    }
+  }
+
+ private:
+  [[nodiscard]] int terms() const {
+    return dynamics_.dof + dynamics_.transcribed + (potential_ ? 1 : 0);
+  }
+
+  // Sets residual `row` of all lanes from the terms, returns d residual / d term.
+  LanePack scale(int i, int row, double* residuals) const {
+    const int n = dynamics_.dof;
+    const int k = dynamics_.transcribed;
+    const LanePack terms = LanePack::load(&terms_[row * kLanes]);
+    if (row < n) {
+      const LanePack weight(std::sqrt(h_));
+      (weight * terms).store(residuals);
+      return weight;
+    }
+    if (row < n + k) {
+      const LanePack weight = weight_.pack();
+      (weight * (terms - shifts_[i * k + row - n].pack())).store(residuals);
+      return weight;
+    }
+    const LanePack root = sqrt(LanePack(2 * h_) * (ceiling_.pack() - terms));
+    (counts_.pack() * root).store(residuals);
+    return LanePack(-h_) * counts_.pack() / root;
+  }
+
+  bool leaves_chart(int l, const double* nodes) {
+    const int n = dynamics_.dof;
+    for (int j = 0; j < n; ++j) {
+      left_[j] = nodes[j * kLanes + l];
+      right_[j] = nodes[(n + j) * kLanes + l];
+    }
+    return !same_chart(dynamics_, left_.data(), right_.data());
+  }
+
+  // The last residuals of lane l: what is beyond each wall.
+  void add_walls(const RelaxationOptions& options, int l, double* residuals, double* jacobian) {
+    const int n = dynamics_.dof;
+    for (int j = 0; j < n; ++j) left_[j] = middles_.q()[j * kLanes + l];
+    walls_.evaluate(left_.data(), s_.data(), gradients_.data(), nullptr);
+    for (int w = 0; w < walls_.size(); ++w) {
+      const int row = terms() + w;
+      const double weight = std::sqrt(h_ * options.wall_rate) / options.wall_sizes[w];
+      const bool beyond = s_[w] < 0;
+      residuals[row * kLanes + l] = beyond ? weight * s_[w] : 0;
+      double* to = jacobian + row * 2 * n * kLanes + l;
+      for (int j = 0; j < n; ++j) {
+        to[j * kLanes] = to[(n + j) * kLanes] = beyond ? 0.5 * weight * gradients_[w * n + j] : 0;
+      }
+    }
+  }
+
+  const Dynamics& dynamics_;
+  double h_;
+  bool potential_;
+  const Walls& walls_;
+  Middles middles_;
+  std::vector<double> terms_;
+  std::vector<double> derivative_;
+  std::vector<double> left_;
+  std::vector<double> right_;
+  std::vector<double> s_;
+  std::vector<double> gradients_;
+  // Of each lane: how it is pulled, sqrt(h rho), c, whether V counts, and lambda / rho.
+  std::array<const Pull*, kLanes> pulls_{};
+  Lanes weight_;
+  Lanes ceiling_;
+  Lanes counts_;
+  std::vector<Lanes> shifts_;
+};
+
+// How the path of a task is pulled. Its task is null where its terms do not exist.
+Pull pull_of(const BoundaryValueProblem& problem, RelaxationTask& task) {
+  const Dynamics& dynamics = problem.dynamics;
+  Path& path = *task.path;
+  Pull pull;
+  const PathTerms state = terms_of(dynamics, problem.time / path.intervals, path);
+  path.lambda.resize(static_cast<std::size_t>(path.intervals) * dynamics.transcribed, 0.0);
+  if (state.constraint.size() != path.lambda.size() || !std::isfinite(state.action)) return pull;
+  pull.task = &task;
+  pull.rho = task.options.penalty * state.mass;
+  pull.ceiling = state.max_potential + 1 + std::abs(state.max_potential);
+  pull.potential = state.potential;
+  pull.walled = in_one_chart(dynamics, path);
+  return pull;
+}
+
+// Updates the multipliers after an inner problem. False where the path is as good as it gets.
+bool update(const BoundaryValueProblem& problem, int iterations, Pull& pull) {
+  RelaxationTask& task = *pull.task;
+  Path& path = *task.path;
+  task.result.iterations += iterations;
+  const PathTerms state = terms_of(problem.dynamics, problem.time / path.intervals, path);
+  const bool whole = state.constraint.size() == path.lambda.size();
+  for (std::size_t i = 0; whole && i < path.lambda.size(); ++i) {
+    path.lambda[i] -= pull.rho * state.constraint[i];
+  }
+  task.result.action = state.action;
+  task.result.violation = state.violation;
+  task.result.feasible = state.violation < task.options.feasibility;
+  ++pull.outer;
+  return whole && !task.result.feasible && pull.outer < task.options.outer_iterations;
+}
+
 }  // namespace
+
+void relax(const BoundaryValueProblem& problem, std::span<RelaxationTask> tasks) {
+  if (tasks.empty()) return;
+  const int intervals = tasks.front().path->intervals;
+  std::vector<Pull> waiting;
+  bool potential = false;
+  for (RelaxationTask& task : tasks) {
+    assert(task.path->intervals == intervals);
+    const Pull pull = pull_of(problem, task);
+    if (pull.task == nullptr) continue;
+    potential = potential || pull.potential;
+    waiting.push_back(pull);
+  }
+  const Walls walls(problem.limits, problem.dynamics.dof);
+  Intervals residuals(problem, intervals, potential, walls);
+  ChainOptions inner;
+  inner.max_iterations = tasks.front().options.inner_iterations;
+  inner.free_first = problem.free_from;
+  inner.free_last = problem.free_to;
+  std::array<Pull*, kLanes> pulls{};
+  auto first = waiting.begin();
+  const NextChain next = [&](int lane, int iterations, std::vector<double>& nodes) -> double {
+    Pull*& pull = pulls[lane];
+    if (pull != nullptr) {
+      pull->task->path->q = nodes;
+      if (!update(problem, iterations, *pull)) pull = nullptr;
+    }
+    if (pull == nullptr && first != waiting.end()) {
+      pull = &*first++;
+      nodes = pull->task->path->q;
+    }
+    if (pull == nullptr) return 0;
+    residuals.set_lane(lane, *pull);
+    return 1 / pull->task->options.caution;
+  };
+  minimise_chains(
+      [&](int i, const double* nodes, double* values, double* jacobian) {
+        residuals.evaluate(i, nodes, values, jacobian);
+      },
+      {intervals, problem.dynamics.dof, residuals.residuals()},
+      inner,
+      next);
+}
 
 Relaxation relax(const BoundaryValueProblem& problem,
                  const RelaxationOptions& options,
                  Path& path) {
-  const Dynamics& dynamics = problem.dynamics;
-  const double h = problem.time / path.intervals;
-  PathTerms state = terms_of(dynamics, h, path);
-  const double spread = 1 + std::abs(state.max_potential);
-  const Walls walls(problem.limits, dynamics.dof);
-  Transcription shared{dynamics,
-                       h,
-                       options.penalty * state.mass,
-                       state.max_potential + spread,
-                       state.potential,
-                       in_one_chart(dynamics, path),
-                       walls,
-                       options};
-  path.lambda.resize(static_cast<std::size_t>(path.intervals) * dynamics.transcribed, 0.0);
-  std::vector<double>& lambda = path.lambda;
-
-  Relaxation result;
-  if (state.constraint.size() != lambda.size() || !std::isfinite(state.action)) return result;
-  Intervals intervals(shared);
-  const int k = dynamics.transcribed;
-  const ChainResiduals residuals =
-      [&](int first, int count, const double* q, double* values, double* jacobian) {
-        return intervals.evaluate(count, lambda.data() + first * k, q, values, jacobian);
-      };
-  ChainOptions inner;
-  inner.max_iterations = options.inner_iterations;
-  inner.radius = 1 / options.caution;
-  inner.free_first = problem.free_from;
-  inner.free_last = problem.free_to;
-  for (int outer = 0; outer < options.outer_iterations; ++outer) {
-    result.iterations += minimise_chain(residuals, shared.residuals(), dynamics.dof, inner, path.q);
-    state = terms_of(dynamics, h, path);
-    if (state.constraint.size() != lambda.size()) break;
-    for (std::size_t i = 0; i < lambda.size(); ++i) lambda[i] -= shared.rho * state.constraint[i];
-    if (state.violation < options.feasibility) break;
-  }
-  result.action = state.action;
-  result.violation = state.violation;
-  result.feasible = state.violation < options.feasibility;
-  return result;
+  RelaxationTask task{options, &path, {}};
+  relax(problem, {&task, 1});
+  return task.result;
 }
 
 }  // namespace carnot::internal

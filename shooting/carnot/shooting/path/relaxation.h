@@ -12,6 +12,7 @@
 // (walls.h) costs rate (s / size)^2 / 2, for s < 0.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "carnot/shooting/boundary_value_problem.h"
@@ -36,6 +37,16 @@ struct Relaxation {
   double violation = 0;   // max |G v| / max |v|
   int iterations = 0;
 };
+
+struct RelaxationTask {
+  RelaxationOptions options;  // inner_iterations are the same for all of a call
+  Path* path;
+  Relaxation result;
+};
+
+// Relaxes paths of as many intervals in place, side by side in lanes (chain_least_squares.h). The
+// results are to the last bit those of one by one, which takes five times as long.
+void relax(const BoundaryValueProblem& problem, std::span<RelaxationTask> tasks);
 
 // Relaxes `path` in place, without its momenta. What is fixed of the ends stays so. Starts from the
 // multipliers of the path, or from zeros where it has none.

@@ -1,13 +1,18 @@
-// One start of a search: a path that is relaxed and tightened.
+// Starts of a search: paths that are relaxed and tightened, as many side by side as there are
+// lanes.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "carnot/shooting/boundary_value_problem.h"
 #include "carnot/shooting/path/path.h"
 #include "carnot/shooting/problem/mass_ladder.h"
+#include "carnot/shooting/problem/stop.h"
 #include "carnot/shooting/search/near_target.h"
 #include "carnot/shooting/search/starts.h"
 
@@ -22,21 +27,37 @@ struct RelaxedStart {
   Path path;
 };
 
-struct RelaxedStartOptions {
-  std::uint64_t seed = 0;
+// One of the sequence of starts (starts.h), on a grid.
+struct StartDraw {
+  int number = 0;
   int intervals = 32;
-  int stiffness = 0;  // how often the penalty is raised before the first attempt
+
+  friend bool operator==(const StartDraw&, const StartDraw&) = default;
 };
 
-// Start `i` of the sequence (starts.h). Where there is a near target, the path is relaxed to the
-// easy problem in its stead and then shrunk.
-RelaxedStart relaxed_start(const MassLadder& ladder,
-                           const std::optional<NearTarget>& near,
-                           const RelaxedStartOptions& options,
-                           int i);
+struct RelaxedStartOptions {
+  std::uint64_t seed = 0;
+  int stiffness = 0;  // how often the penalty is raised before the first attempt
+  int threads = 1;
+  Stop stop;  // what begins later is not found
+};
 
-// The same from a start of any origin, without a near target. The penalty is raised `stiffness`
-// times before the first attempt.
-RelaxedStart relaxed(const BoundaryValueProblem& problem, const Start& start, int stiffness);
+// Starts that go side by side, by their indices: those of one rung and grid, as many as there are
+// lanes, or fewer where there are threads without a pack.
+using StartPack = std::vector<std::size_t>;
+std::vector<StartPack> packs_of(std::span<const Start> starts, int threads);
+
+// Relaxes and tightens starts of any origin, each on the rung that its path names. What becomes of
+// one does not depend on the others, nor on the number of threads.
+std::vector<RelaxedStart> relaxed(const MassLadder& ladder,
+                                  const RelaxedStartOptions& options,
+                                  std::span<const Start> starts);
+
+// The same for starts of the sequence. Where there is a near target, the paths are relaxed to the
+// easy problem in its stead and then shrunk.
+std::vector<RelaxedStart> relaxed_starts(const MassLadder& ladder,
+                                         const std::optional<NearTarget>& near,
+                                         const RelaxedStartOptions& options,
+                                         std::span<const StartDraw> draws);
 
 }  // namespace carnot::internal

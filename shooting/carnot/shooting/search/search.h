@@ -80,6 +80,8 @@ class Search {
   // Whether momenta take turns with starts of drift: while these found nothing.
   [[nodiscard]] bool turn_of_momenta() const;
   void relax_round(int count);
+  // The next starts of the sequence, relaxed. Some may have been made ahead.
+  [[nodiscard]] std::vector<RelaxedStart> next_starts(int count);
   // The same from crossings of what is known (crossing.h). False where too little is known.
   [[nodiscard]] bool cross_round(int count);
   // The grid of the next round of starts, or of crossings, of which `drawn` were tried before.
@@ -151,6 +153,13 @@ class Search {
   MassLadder ladder_;
   DiscreteList discrete_;
   SearchTally tally_;
+  // Starts that were relaxed and not yet looked at, and how.
+  struct Ahead {
+    int stiffness = 0;
+    std::vector<StartDraw> draws;
+    std::vector<RelaxedStart> starts;
+  };
+  Ahead ahead_;
   Reason furthest_ = Reason::kNone;
   double least_residual_ = std::numeric_limits<double>::infinity();
   bool seeks_abnormal_;

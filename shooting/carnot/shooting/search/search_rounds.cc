@@ -1,11 +1,13 @@
 // The rounds of a search: starts, and what leads from what is known to more.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
 #include "carnot/numerics/parallel.h"
 #include "carnot/shooting/extremal/ranking.h"
+#include "carnot/shooting/linear/chain_least_squares.h"
 #include "carnot/shooting/path/descent.h"
 #include "carnot/shooting/path/discrete_newton.h"
 #include "carnot/shooting/path/refinement.h"
@@ -78,13 +80,32 @@ int Search::intervals_of_round(int drawn) const {
   return std::max(intervals_, std::min(intervals_ << halvings, kMaxIntervals));
 }
 
+std::vector<RelaxedStart> Search::next_starts(int count) {
+  // Lanes are filled, on two threads at most, and at first twice: most searches look at as many
+  // starts. What they do not look at is lost.
+  const int packs = tally_.drawn == 0 ? 2 : std::min(threads_, 2);
+  const int most = std::max(count, std::min(packs * kChainLanes, policy_.left(tally_)));
+  std::vector<StartDraw> draws;
+  for (int i = tally_.drawn; i < tally_.drawn + most; ++i) {
+    draws.push_back({i, intervals_of_round(i)});
+  }
+  const auto ready = static_cast<std::ptrdiff_t>(ahead_.starts.size());
+  const bool fits = ready >= count && ahead_.stiffness == stiffness_ &&
+                    std::equal(draws.begin(), draws.begin() + count, ahead_.draws.begin());
+  if (!fits) {
+    const RelaxedStartOptions options{options_.seed, stiffness_, threads_, stop_};
+    ahead_ = {stiffness_, draws, relaxed_starts(ladder_, near_, options, draws)};
+  }
+  const auto end = ahead_.starts.begin() + count;
+  std::vector<RelaxedStart> starts(std::make_move_iterator(ahead_.starts.begin()),
+                                   std::make_move_iterator(end));
+  ahead_.starts.erase(ahead_.starts.begin(), end);
+  ahead_.draws.erase(ahead_.draws.begin(), ahead_.draws.begin() + count);
+  return starts;
+}
+
 void Search::relax_round(int count) {
-  const RelaxedStartOptions options{options_.seed, intervals_of_round(tally_.drawn), stiffness_};
-  std::vector<RelaxedStart> starts(count);
-  parallel_for(count, threads_, [&](int i) {
-    if (stop_.reached()) return;
-    starts[i] = relaxed_start(ladder_, near_, options, tally_.drawn + i);
-  });
+  const std::vector<RelaxedStart> starts = next_starts(count);
   tally_.drawn += count;
   const Polished polished = absorb(starts);
   if (seeks_abnormal_) note_relaxed(starts);
@@ -107,18 +128,16 @@ bool Search::cross_round(int count) {
   if (parents.size() < 2) return false;
   const int first = tally_.crossed;
   const int intervals = intervals_of_round(first);
-  std::vector<RelaxedStart> starts(count);
+  std::vector<Start> starts(count);
   parallel_for(count, threads_, [&](int i) {
-    if (stop_.reached()) return;
     const int rung = ladder_.rung_of(first + i, intervals);
-    Start start = make_start(ladder_.on(rung), options_.seed, first + i, intervals);
-    start.path = crossing(parents, options_.seed, first + i, intervals);
-    start.path.rung = rung;
-    starts[i] = relaxed(ladder_.on(rung), start, stiffness_);
+    starts[i] = make_start(ladder_.on(rung), options_.seed, first + i, intervals);
+    starts[i].path = crossing(parents, options_.seed, first + i, intervals);
+    starts[i].path.rung = rung;
   });
   tally_.crossed += count;
   const int before = tally_.converged;
-  absorb(starts, kOneCrossing);
+  absorb(relaxed(ladder_, {options_.seed, stiffness_, threads_, stop_}, starts), kOneCrossing);
   tally_.crossings_converged += tally_.converged - before;
   return true;
 }
