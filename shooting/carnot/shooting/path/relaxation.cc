@@ -156,8 +156,9 @@ class Intervals {
       return weight;
     }
     const LanePack root = sqrt(LanePack(2 * h_) * (ceiling_.pack() - terms));
-    (counts_.pack() * root).store(residuals);
-    return LanePack(-h_) * counts_.pack() / root;
+    const LanePack::Mask counts = counts_.pack() > LanePack(0);
+    select(counts, root, LanePack(0)).store(residuals);
+    return select(counts, LanePack(-h_) / root, LanePack(0));
   }
 
   bool leaves_chart(int l, const double* nodes) {
