@@ -81,11 +81,10 @@ TYPED_TEST(VelocityConstraintsTest, WrappersHideWhatTheySay) {
 TYPED_TEST(VelocityConstraintsTest, SaysWhetherTheMassIsConstant) {
   bool constant = true;
   this->at_all_points([&](const auto& q, const auto& /*p*/) {
-    constexpr int n = TypeParam::kDof;
     const auto mass = this->framed_.scene().mass(seeded(q));
-    for (int i = 0; i < n; ++i) {
-      for (int j = 0; j < n; ++j) {
-        for (int d = 0; d < n; ++d) constant = constant && mass(i, j).v[d] == 0;
+    for (int i = 0; i < this->n; ++i) {
+      for (int j = 0; j < this->n; ++j) {
+        for (int d = 0; d < this->n; ++d) constant = constant && mass(i, j).v[d] == 0;
       }
     }
   });
