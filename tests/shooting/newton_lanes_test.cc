@@ -48,6 +48,22 @@ std::vector<Relaxation> relax_together(const BoundaryValueProblem& problem,
   return results;
 }
 
+std::vector<Path> relaxed_paths(const BoundaryValueProblem& problem) {
+  std::vector<Start> starts = starts_of(problem);
+  relax_together(problem, starts);
+  std::vector<Path> paths;
+  for (const Start& start : starts) paths.push_back(start.path);
+  return paths;
+}
+
+std::vector<TighteningTask> tighten_together(const BoundaryValueProblem& problem,
+                                             std::vector<Path>& paths) {
+  std::vector<TighteningTask> tasks;
+  for (Path& path : paths) tasks.push_back({&path, {}});
+  tighten(problem, {}, tasks);
+  return tasks;
+}
+
 TEST(RelaxationLanes, RelaxEachPathAsIfItWereAlone) {
   for (const BoundaryValueProblem& problem : problems()) {
     std::vector<Start> together = starts_of(problem);
@@ -85,14 +101,9 @@ TEST(RelaxationLanes, LeaveOutWhatHasNoTerms) {
 TEST(NewtonLanes, AgreeWithThePlainMethod) {
   constexpr double kSame = 1e-7;  // of the path; the residual is 1e-9 of the momenta
   for (const BoundaryValueProblem& problem : problems()) {
-    std::vector<Start> starts = starts_of(problem);
-    relax_together(problem, starts);
-    std::vector<Path> together;
-    for (const Start& start : starts) together.push_back(start.path);
-    std::vector<Path> plain = together;
-    std::vector<TighteningTask> tasks;
-    for (Path& path : together) tasks.push_back({&path, {}});
-    tighten(problem, {}, tasks);
+    std::vector<Path> plain = relaxed_paths(problem);
+    std::vector<Path> together = plain;
+    const std::vector<TighteningTask> tasks = tighten_together(problem, together);
     int converged = 0;
     int plainly = 0;
     int both = 0;
@@ -131,14 +142,9 @@ TEST(NewtonLanes, AgreeWithThePlainMethod) {
 
 TEST(NewtonLanes, TightenEachPathAsIfItWereAlone) {
   for (const BoundaryValueProblem& problem : problems()) {
-    std::vector<Start> starts = starts_of(problem);
-    relax_together(problem, starts);
-    std::vector<Path> together;
-    for (const Start& start : starts) together.push_back(start.path);
-    std::vector<Path> alone = together;
-    std::vector<TighteningTask> tasks;
-    for (Path& path : together) tasks.push_back({&path, {}});
-    tighten(problem, {}, tasks);
+    std::vector<Path> alone = relaxed_paths(problem);
+    std::vector<Path> together = alone;
+    const std::vector<TighteningTask> tasks = tighten_together(problem, together);
     for (int i = 0; i < kStarts; ++i) {
       TighteningTask own{&alone[i], {}};
       tighten(problem, {}, {&own, 1});

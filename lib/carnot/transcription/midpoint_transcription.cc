@@ -27,8 +27,7 @@ LanePack chosen(const LanePack::Mask& is, const LanePack& a, const LanePack& b) 
 // A number with its derivatives: `known` numbers, the value first. T is double, or the numbers of
 // kLanes intervals side by side. The compiler is to know how many: where it did not, searches of
 // trailers took 1.3 times as long. What is summed up here stays in registers: where each summand
-// was added to memory, starts of a vehicle took 1.08 times
-// as long to relax.
+// was added to memory, starts of a vehicle took 1.08 times as long to relax.
 template <class T, int known>
 class Number {
  public:

