@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <complex>
 #include <numbers>
 #include <random>
 
@@ -82,24 +81,36 @@ TEST(Dense, DeterminantBySignAndSize) {
   EXPECT_NEAR(determinant_of(large).log_size, 800 * std::log(10), 1e-9);
 }
 
-TEST(Dense, ArgumentOfAComplexDeterminant) {
-  const VectorXd angles = VectorXd::LinSpaced(3, 0.2, 0.9);
-  const MatrixXd a = angles.array().cos().matrix().asDiagonal();
-  const MatrixXd b = angles.array().sin().matrix().asDiagonal();
-  EXPECT_NEAR(argument_of_determinant(a, b), angles.sum(), kRounded);
-  EXPECT_NEAR(argument_of_determinant(-MatrixXd::Identity(1, 1), MatrixXd::Zero(1, 1)),
-              std::numbers::pi,
-              kRounded);
-}
-
 TEST(Dense, QrFactorsAndTheirBasis) {
   const MatrixXd columns = random_matrix(6, 3, 3);
   const QrFactors factors = qr_factors(columns);
   expect_equal(factors.q.transpose() * factors.q, MatrixXd::Identity(3, 3));
   expect_equal(factors.q * factors.r, columns);
-  expect_equal(orthonormal(columns), factors.q);
+  EXPECT_TRUE(factors.r.isUpperTriangular(0));
   const MatrixXd right = random_matrix(3, 2, 4);
   expect_equal(factors.r * lu_solve(factors.r, right), right);
+}
+
+// Of every shape, of columns of any length, and of columns that repeat each other: the basis is
+// orthonormal in any case, and spans what the columns do.
+TEST(Dense, OrthonormalBasesSpanTheColumns) {
+  constexpr double kFar = 1e8;
+  for (int n = 1; n <= 8; ++n) {
+    for (const int rows : {n, 2 * n, 2 * n + 1}) {
+      MatrixXd columns = random_matrix(rows, n, 20 + n);
+      columns.col(0) *= kFar;
+      columns.col(n - 1) /= kFar;
+      if (n > 3) columns.col(2) = columns.col(1);
+      const MatrixXd basis = orthonormal(columns);
+      expect_equal(basis.transpose() * basis, MatrixXd::Identity(n, n));
+      for (int j = 0; j < n; ++j) {
+        const VectorXd column = columns.col(j).normalized();
+        expect_equal(basis * (basis.transpose() * column), column);
+      }
+      expect_equal(orthonormal(columns), qr_factors(columns).q);
+    }
+  }
+  expect_equal(orthonormal(MatrixXd::Zero(4, 2)), MatrixXd::Identity(4, 2));
 }
 
 TEST(Dense, KernelOfOneRowTooFew) {
@@ -113,12 +124,15 @@ TEST(Dense, KernelOfOneRowTooFew) {
 }
 
 TEST(Dense, SymmetricEigenvaluesAscend) {
-  const MatrixXd basis = orthonormal(random_matrix(4, 4, 6));
-  const VectorXd values = Eigen::Vector4d(-3, 0, 1, 7);
-  const MatrixXd a = basis * values.asDiagonal() * basis.transpose();
-  const SymmetricEigen eigen = symmetric_eigen(a);
-  expect_equal(eigen.values, values);
-  expect_equal(eigen.vectors * eigen.values.asDiagonal() * eigen.vectors.transpose(), a);
+  for (int n = 1; n <= 8; ++n) {
+    const MatrixXd basis = orthonormal(random_matrix(n, n, 6));
+    const VectorXd values = VectorXd::LinSpaced(n, -3, 7).array().floor();
+    const MatrixXd a = basis * values.asDiagonal() * basis.transpose();
+    const SymmetricEigen eigen = symmetric_eigen(a);
+    expect_equal(eigen.values, values);
+    expect_equal(eigen.vectors.transpose() * eigen.vectors, MatrixXd::Identity(n, n));
+    expect_equal(eigen.vectors * eigen.values.asDiagonal() * eigen.vectors.transpose(), a);
+  }
 }
 
 // As many as the eigenvalues tell, for bounds between them, and close to one of them.

@@ -44,8 +44,8 @@ struct Frame {
   double t = 0;
   std::vector<double> z;
   MatrixXd plane;
-  double phi = 0;  // continuous argument of det W
-  Phases phases;
+  VectorXd phases;
+  double phi = 0;    // their sum, by multiples of 2 pi a continuous argument of det W
   double scale = 1;  // c
 };
 
@@ -82,8 +82,8 @@ class Planes {
   // have not passed it.
   [[nodiscard]] double count(const Frame& frame, double tolerance = 0) const {
     double sum = 0;
-    for (Eigen::Index j = corank_; j < frame.phases.angles.size(); ++j) {
-      const double theta = frame.phases.angles[j];
+    for (Eigen::Index j = corank_; j < frame.phases.size(); ++j) {
+      const double theta = frame.phases[j];
       sum += theta < tolerance ? theta + kTurn : theta;
     }
     return (frame.phi - sum) / kTurn;
@@ -91,8 +91,8 @@ class Planes {
   // How many phases, but for those of the corank, are nearer to zero than `tolerance`.
   [[nodiscard]] int near_zero(const Frame& frame, double tolerance) const {
     int number = 0;
-    for (Eigen::Index j = corank_; j < frame.phases.angles.size(); ++j) {
-      if (std::abs(frame.phases.angles[j]) < tolerance) ++number;
+    for (Eigen::Index j = corank_; j < frame.phases.size(); ++j) {
+      if (std::abs(frame.phases[j]) < tolerance) ++number;
     }
     return number;
   }
@@ -105,8 +105,8 @@ class Planes {
     frame.scale = scale;
     frame.phases = phases_of(frame.plane);
     frame.phi = kTurn * passed;
-    for (Eigen::Index j = corank_; j < frame.phases.angles.size(); ++j) {
-      const double theta = frame.phases.angles[j];
+    for (Eigen::Index j = corank_; j < frame.phases.size(); ++j) {
+      const double theta = frame.phases[j];
       frame.phi += theta < 0 ? theta + kTurn : theta;
     }
   }
@@ -154,8 +154,7 @@ class Planes {
     if (!carried.allFinite()) return false;
     to.plane = orthonormal(carried);
     to.phases = phases_of(to.plane);
-    // det W = (det U)^2.
-    to.phi = from.phi + std::remainder(2 * (to.phases.turn - from.phases.turn), kTurn);
+    to.phi = from.phi + std::remainder(to.phases.sum() - from.phases.sum(), kTurn);
     return true;
   }
   [[nodiscard]] bool take(const Frame& from, const JoinedSteps& steps, long i, Frame& to) const {
@@ -254,7 +253,7 @@ Frame first_frame(const BoundaryValueProblem& problem, const Knots& knots) {
   frame.plane = MatrixXd::Zero(2 * n, n);
   for (int j = 0; j < n; ++j) frame.plane(start_index(problem, j), j) = 1;
   frame.phases = phases_of(frame.plane);
-  for (const double angle : frame.phases.angles) frame.phi += angle < 0 ? angle + kTurn : angle;
+  for (const double angle : frame.phases) frame.phi += angle < 0 ? angle + kTurn : angle;
   return frame;
 }
 

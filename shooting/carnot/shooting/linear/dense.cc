@@ -5,12 +5,12 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <limits>
 #include <numeric>
 #include <vector>
 
 #include "carnot/numerics/lu.h"
+#include "carnot/shooting/linear/known_size.h"
 
 namespace carnot::internal {
 
@@ -86,13 +86,6 @@ Determinant determinant_of(const MatrixXd& a) {
   return {negative ? -1 : 1, pivots.array().abs().log().sum()};
 }
 
-double argument_of_determinant(const MatrixXd& a, const MatrixXd& b) {
-  Eigen::MatrixXcd sum(a.rows(), a.cols());
-  sum.real() = a;
-  sum.imag() = b;
-  return std::arg(Eigen::FullPivLU<Eigen::MatrixXcd>(sum).determinant());
-}
-
 namespace {
 
 // Of all of Eigen's decompositions into an orthogonal and a triangular factor, the one for all
@@ -110,8 +103,6 @@ MatrixXd times_q(const Qr& qr, MatrixXd x) {
   }
   return x;
 }
-
-MatrixXd basis_of(const Qr& qr) { return times_q(qr, MatrixXd::Identity(qr.rows(), qr.cols())); }
 
 // R of A = Q R, as many rows as columns.
 MatrixXd r_of(const Qr& qr) {
@@ -132,11 +123,22 @@ MatrixXd squared(const MatrixXd& a) {
 
 }  // namespace
 
-MatrixXd orthonormal(const MatrixXd& columns) { return basis_of(Qr(columns)); }
+MatrixXd orthonormal(const MatrixXd& columns) {
+  if (columns.rows() != 2 * columns.cols()) return qr_factors(columns).q;
+  return with_known_size(columns.cols(), [&](auto known) -> MatrixXd {  // that of a plane
+    constexpr int kSize = known;
+    constexpr int kRows = kSize == Eigen::Dynamic ? Eigen::Dynamic : 2 * kSize;
+    Eigen::Matrix<double, kRows, kSize> q = columns;
+    Eigen::Matrix<double, kSize, kSize> r;
+    orthonormalise(q, r);
+    return q;
+  });
+}
 
 QrFactors qr_factors(const MatrixXd& columns) {
-  const Qr qr(columns);
-  return {basis_of(qr), r_of(qr)};
+  QrFactors factors{columns, {}};
+  orthonormalise(factors.q, factors.r);
+  return factors;
 }
 
 std::optional<VectorXd> kernel_line(const MatrixXd& rows, double full_rank) {
@@ -185,43 +187,25 @@ int count_below(const SmallMatrix& a, double bound) {
   return count;
 }
 
-// Jacobi's method, row by row: small eigenvalues keep their digits beside large ones. Some ten
-// sweeps; ends where the entries beside the diagonal are round-off of those on it.
 SymmetricEigen symmetric_eigen(const MatrixXd& a) {
-  constexpr double kEps = std::numeric_limits<double>::epsilon();
-  constexpr int kMostSweeps = 60;
   const Eigen::Index n = a.rows();
   if (!a.allFinite()) return {VectorXd::Constant(n, kNan), MatrixXd::Constant(n, n, kNan)};
-  MatrixXd rest = a;
-  MatrixXd vectors = MatrixXd::Identity(n, n);
-  const double nothing = kEps * kEps * a.norm();
-  bool rotated = true;
-  for (int sweep = 0; rotated && sweep < kMostSweeps; ++sweep) {
-    rotated = false;
-    for (Eigen::Index p = 0; p < n; ++p) {
-      for (Eigen::Index q = p + 1; q < n; ++q) {
-        const double size = std::sqrt(std::abs(rest(p, p) * rest(q, q)));
-        if (std::abs(rest(p, q)) <= std::max(kEps * size, nothing)) continue;
-        Eigen::JacobiRotation<double> rotation;
-        if (!rotation.makeJacobi(rest, p, q)) continue;
-        rotated = true;
-        rest.applyOnTheLeft(p, q, rotation.adjoint());
-        rest.applyOnTheRight(p, q, rotation);
-        vectors.applyOnTheRight(p, q, rotation);
-      }
+  return with_known_size(n, [&](auto known) {
+    Eigen::Matrix<double, known, known> rest = a;
+    Eigen::Matrix<double, known, known> vectors;
+    diagonalise(rest, vectors);
+    std::vector<Eigen::Index> order(n);
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(), [&](Eigen::Index i, Eigen::Index j) {
+      return rest(i, i) < rest(j, j);
+    });
+    SymmetricEigen eigen{VectorXd(n), MatrixXd(n, n)};
+    for (Eigen::Index i = 0; i < n; ++i) {
+      eigen.values[i] = rest(order[i], order[i]);
+      eigen.vectors.col(i) = vectors.col(order[i]);
     }
-  }
-  std::vector<Eigen::Index> order(n);
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](Eigen::Index i, Eigen::Index j) {
-    return rest(i, i) < rest(j, j);
+    return eigen;
   });
-  SymmetricEigen eigen{VectorXd(n), MatrixXd(n, n)};
-  for (Eigen::Index i = 0; i < n; ++i) {
-    eigen.values[i] = rest(order[i], order[i]);
-    eigen.vectors.col(i) = vectors.col(order[i]);
-  }
-  return eigen;
 }
 
 VectorXd singular_values(const MatrixXd& a) {

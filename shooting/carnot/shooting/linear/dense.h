@@ -37,12 +37,10 @@ struct Determinant {
   double log_size = 0;
 };
 Determinant determinant_of(const Eigen::MatrixXd& a);
-// The argument of det(A + iB), in (-pi, pi].
-double argument_of_determinant(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
 // An orthonormal basis of the space that the columns span, as many columns, by Householder's QR.
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns);
-// The same basis Q, and the square R of columns = Q R, an upper triangle with its columns permuted.
+// The same basis Q, and the square R of columns = Q R, an upper triangle.
 struct QrFactors {
   Eigen::MatrixXd q;
   Eigen::MatrixXd r;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "carnot/shooting/linear/dense.h"
+#include "carnot/shooting/linear/known_size.h"
 #include "carnot/shooting/linear/round_off.h"
 
 namespace carnot::internal {
@@ -13,36 +14,41 @@ namespace carnot::internal {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-Phases phases_of(const MatrixXd& plane) {
+VectorXd phases_of(const MatrixXd& plane) {
   // Angles of combinations; one of them separates the eigenvalues.
   constexpr std::array kCombinations{0.7, 1.9, 2.6};
   constexpr double kCommon = 1e-9;
-  const auto n = plane.cols();
-  const auto x = plane.topRows(n);
-  const auto p = plane.bottomRows(n);
-  const MatrixXd real = product(p, p.transpose()) - product(x, x.transpose());
-  const MatrixXd cross = product(p, x.transpose());
-  const MatrixXd imaginary = cross + cross.transpose();
-  Phases phases;
-  double best = std::numeric_limits<double>::infinity();
-  for (const double angle : kCombinations) {
-    const MatrixXd v =
-        symmetric_eigen(std::cos(angle) * real + std::sin(angle) * imaginary).vectors;
-    const MatrixXd a = product(transposed_product(v, real), v);
-    const MatrixXd b = product(transposed_product(v, imaginary), v);
-    const double mixed = (a - MatrixXd(a.diagonal().asDiagonal())).cwiseAbs().maxCoeff() +
-                         (b - MatrixXd(b.diagonal().asDiagonal())).cwiseAbs().maxCoeff();
-    if (!(mixed < best)) continue;
-    best = mixed;
-    phases.angles.resize(n);
-    for (Eigen::Index j = 0; j < n; ++j) phases.angles[j] = std::atan2(b(j, j), a(j, j));
-    if (mixed < kCommon) break;
-  }
-  std::sort(phases.angles.data(), phases.angles.data() + n, [](double a, double b) {
-    return std::abs(a) < std::abs(b);
+  VectorXd angles = VectorXd::Constant(plane.cols(), std::numeric_limits<double>::quiet_NaN());
+  with_known_size(plane.cols(), [&](auto known) {
+    using Square = Eigen::Matrix<double, known, known>;
+    const auto n = plane.cols();
+    const Square x = plane.topRows(n);
+    const Square p = plane.bottomRows(n);
+    const Square real = Square(p.lazyProduct(p.transpose())) - x.lazyProduct(x.transpose());
+    const Square cross = p.lazyProduct(x.transpose());
+    const Square imaginary = cross + cross.transpose();
+    Square v;
+    double best = std::numeric_limits<double>::infinity();
+    for (const double angle : kCombinations) {
+      Square combined = std::cos(angle) * real + std::sin(angle) * imaginary;
+      diagonalise(combined, v);
+      const Square a = v.transpose().lazyProduct(Square(real.lazyProduct(v)));
+      const Square b = v.transpose().lazyProduct(Square(imaginary.lazyProduct(v)));
+      double mixed = 0;
+      for (Eigen::Index j = 0; j < n; ++j) {
+        for (Eigen::Index i = 0; i < j; ++i) {
+          mixed = std::max({mixed, std::abs(a(i, j)), std::abs(b(i, j))});
+        }
+      }
+      if (!(mixed < best)) continue;
+      best = mixed;
+      for (Eigen::Index j = 0; j < n; ++j) angles[j] = std::atan2(b(j, j), a(j, j));
+      if (mixed < kCommon) break;
+    }
   });
-  phases.turn = argument_of_determinant(p, x);
-  return phases;
+  std::sort(
+      angles.begin(), angles.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  return angles;
 }
 
 namespace {

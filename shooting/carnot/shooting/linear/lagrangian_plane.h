@@ -10,13 +10,9 @@
 
 namespace carnot::internal {
 
-struct Phases {
-  Eigen::VectorXd angles;  // theta_j in (-pi, pi], smallest |theta_j| first
-  double turn = 0;         // arg det U, up to a multiple of pi
-};
-
-// `plane` is 2n x n with orthonormal columns.
-Phases phases_of(const Eigen::MatrixXd& plane);
+// theta_j in (-pi, pi], smallest |theta_j| first. Their sum is the argument of det W, up to a
+// multiple of 2 pi. `plane` is 2n x n with orthonormal columns.
+Eigen::VectorXd phases_of(const Eigen::MatrixXd& plane);
 
 // What X P^-1, a symmetric matrix, says of a plane.
 struct Graph {
