@@ -29,7 +29,7 @@ class TrajectoryTest : public ::testing::Test {
       return true;
     });
     EXPECT_TRUE(report.completed());
-    return recorder.trajectory();
+    return recorder.take();
   }
 
   // z(t), to round-off.

@@ -93,6 +93,31 @@ TEST(LagrangianPlane, SymplecticImagesHaveUnitaryBases) {
   EXPECT_TRUE(phases_of(image).allFinite());
 }
 
+// The image spans what the map makes of the plane, once both are in balanced coordinates.
+TEST(LagrangianPlane, ImagesAreInBalancedCoordinates) {
+  constexpr double kOfEight = 1e-12;  // 16 x 16, condition of S about 20
+  constexpr double kScale = 3;
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  const auto entry = [&] { return normal(random); };
+  for (int n = 1; n <= 8; ++n) {
+    const MatrixXd some = MatrixXd::NullaryExpr(n, n, entry);
+    const MatrixXd s = some * some.transpose() / n + MatrixXd::Identity(n, n);
+    const Balance balance{s, s.inverse()};
+    const MatrixXd map = MatrixXd::NullaryExpr(2 * n, 2 * n, entry);
+    const MatrixXd plane = MatrixXd::NullaryExpr(2 * n, n, entry);  // (S^-1 X / c, S P c)
+    MatrixXd unbalanced(2 * n, n);
+    unbalanced << kScale * s * plane.topRows(n), s.inverse() * plane.bottomRows(n) / kScale;
+    const MatrixXd moved = map * unbalanced;
+    MatrixXd expected(2 * n, n);
+    expected << s.inverse() * moved.topRows(n) / kScale, kScale * s * moved.bottomRows(n);
+    const MatrixXd image = image_of(map, balance, kScale, plane);
+    EXPECT_LE((image.transpose() * image - MatrixXd::Identity(n, n)).norm(), kOfEight);
+    EXPECT_LE((image * (image.transpose() * expected) - expected).norm(),
+              kOfEight * expected.norm());
+  }
+}
+
 TEST(LagrangianPlane, BalancedGraphsHaveModerateAngles) {
   const MatrixXd plane = plane_of(1e-6, 1.2);
   const Graph graph = graph_of(plane);

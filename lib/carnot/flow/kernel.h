@@ -171,7 +171,7 @@ FlowSummary monitored_flow(const void* opaque,
   summary.energy_balance = monitor.energy_balance();
   summary.constraint_error = monitor.constraint_error();
   summary.holonomic_error = monitor.holonomic_error();
-  summary.trajectory = recorder.trajectory();
+  summary.trajectory = recorder.take();
   return summary;
 }
 

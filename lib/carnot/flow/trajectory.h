@@ -30,6 +30,7 @@ class Recorder {
            const Stepper& step,
            const State<double, n>& z)
       : plan_(plan), times_(std::move(times)), node_(z), branch_(step.branch()) {
+    reserve(times_.size());
     const double tolerance = kNodeTolerance * std::abs(plan.length(0));
     if (times_.empty() || std::abs(times_[0] - plan.start) > tolerance) return;
     record(step.system(), times_[0], z, branch_, 0);
@@ -67,12 +68,22 @@ class Recorder {
     branch_ = step.branch();
   }
 
-  [[nodiscard]] const Trajectory& trajectory() const { return trajectory_; }
+  // Hands over what was recorded.
+  [[nodiscard]] Trajectory take() { return std::move(trajectory_); }
 
  private:
   static constexpr double kNodeTolerance = 1e-9;  // of a step: nearer than this is the node
 
   [[nodiscard]] std::size_t next() const { return trajectory_.t.size(); }
+
+  void reserve(std::size_t samples) {
+    trajectory_.t.reserve(samples);
+    trajectory_.q.reserve(samples);
+    trajectory_.p.reserve(samples);
+    trajectory_.lambda.reserve(samples);
+    trajectory_.hamiltonian.reserve(samples);
+    trajectory_.work.reserve(samples);
+  }
 
   void record(const System& system, double t, const State<double, n>& z, Algebraic y, double work) {
     const Vector<double, n> q(z.value.data());

@@ -55,11 +55,10 @@ class Planes {
       const Dynamics& dynamics, const Units& units, const MatrixXd& s, int corank, double precision)
       : dynamics_(dynamics),
         units_(units),
-        s_(s),
-        inverse_(lu_inverse(s)),
+        balance_{s, lu_inverse(s)},
         corank_(corank),
         precision_(precision),
-        doubt_(kPlaneRoundOff * s_.norm() * inverse_.norm()) {}
+        doubt_(kPlaneRoundOff * balance_.s.norm() * balance_.inverse.norm()) {}
 
   // The frame at time t, in as many steps of the method as det W needs to be followed. False when
   // a step fails or W turns too fast.
@@ -141,18 +140,11 @@ class Planes {
  private:
   // Carries a frame by a step to time t, or by step i of some.
   [[nodiscard]] bool carry(const Frame& from, double t, StepMap step, Frame& to) const {
-    const int n = dynamics_.dof;
     to.t = t;
     to.z = std::move(step.z);
     to.scale = from.scale;
-    MatrixXd carried = from.plane;
-    carried.topRows(n) = to.scale * product(s_, carried.topRows(n));
-    carried.bottomRows(n) = product(inverse_, carried.bottomRows(n)) / to.scale;
-    carried = product(step.map, carried);
-    carried.topRows(n) = product(inverse_, carried.topRows(n)) / to.scale;
-    carried.bottomRows(n) = to.scale * product(s_, carried.bottomRows(n));
-    if (!carried.allFinite()) return false;
-    to.plane = orthonormal(carried);
+    to.plane = image_of(step.map, balance_, to.scale, from.plane);
+    if (!to.plane.allFinite()) return false;
     to.phases = phases_of(to.plane);
     to.phi = from.phi + std::remainder(to.phases.sum() - from.phases.sum(), kTurn);
     return true;
@@ -176,8 +168,7 @@ class Planes {
 
   const Dynamics& dynamics_;
   const Units& units_;
-  MatrixXd s_;
-  MatrixXd inverse_;
+  Balance balance_;
   int corank_;
   double precision_;
   double doubt_;
@@ -210,12 +201,12 @@ TargetForm Planes::form_at(const Frame& frame,
                            const BoundaryValueProblem& problem,
                            double tolerance) const {
   const int n = dynamics_.dof;
-  MatrixXd x = product(s_, frame.plane.topRows(n));
-  MatrixXd p = product(inverse_, frame.plane.bottomRows(n));
+  MatrixXd x = product(balance_.s, frame.plane.topRows(n));
+  MatrixXd p = product(balance_.inverse, frame.plane.bottomRows(n));
   // The scales, not the norms of x and p: at a conjugate time all of x may vanish, and its sign is
   // then that of a rounding error.
-  x /= s_.norm();
-  p /= inverse_.norm();
+  x /= balance_.s.norm();
+  p /= balance_.inverse.norm();
   MatrixXd conditions(n, n);
   MatrixXd fixed = MatrixXd::Zero(n, n);  // a row of zeros for each free coordinate
   std::vector<int> free;

@@ -45,7 +45,7 @@ MatrixXd map_of(const Dynamics& dynamics,
     const MatrixXd after = normals_at(dynamics, t + h, end);
     map.bottomRightCorner(n, n) += product(after, before.transpose());
   }
-  return units.map(map);
+  return units.map(std::move(map));
 }
 
 }  // namespace
@@ -118,12 +118,12 @@ bool StepMaps::read(long i, StepMap& step) {
 
 bool JoinedSteps::read(long i, StepMap& step) const {
   if (!steps_.read(i * together_, step)) return false;
-  MatrixXd joined = step.map;
+  StepMap next;
   for (int j = 1; j < together_; ++j) {
-    if (!steps_.read(i * together_ + j, step)) return false;
-    joined = product(step.map, joined);
+    if (!steps_.read(i * together_ + j, next)) return false;
+    step.z = next.z;
+    step.map = product(next.map, step.map);
   }
-  step.map = std::move(joined);
   return true;
 }
 

@@ -51,6 +51,26 @@ VectorXd phases_of(const MatrixXd& plane) {
   return angles;
 }
 
+MatrixXd image_of(const MatrixXd& map, const Balance& balance, double c, const MatrixXd& plane) {
+  return with_known_size(plane.cols(), [&](auto known) -> MatrixXd {
+    constexpr int kSize = known;
+    constexpr int kRows = kSize == Eigen::Dynamic ? Eigen::Dynamic : 2 * kSize;
+    using Square = Eigen::Matrix<double, kSize, kSize>;
+    const auto n = plane.cols();
+    const Square s = balance.s;
+    const Square inverse = balance.inverse;
+    Eigen::Matrix<double, kRows, kSize> image(2 * n, n);
+    image.topRows(n) = c * Square(s.lazyProduct(plane.topRows(n)));
+    image.bottomRows(n) = Square(inverse.lazyProduct(plane.bottomRows(n))) / c;
+    const Eigen::Matrix<double, kRows, kSize> moved = map.lazyProduct(image);
+    image.topRows(n) = Square(inverse.lazyProduct(moved.topRows(n))) / c;
+    image.bottomRows(n) = c * Square(s.lazyProduct(moved.bottomRows(n)));
+    Square r;
+    orthonormalise(image, r);
+    return image;
+  });
+}
+
 namespace {
 
 // X P^-1 of a plane, and in how many directions it is infinite; the matrix is zero there.

@@ -14,6 +14,20 @@ namespace carnot::internal {
 // multiple of 2 pi. `plane` is 2n x n with orthonormal columns.
 Eigen::VectorXd phases_of(const Eigen::MatrixXd& plane);
 
+// Coordinates in which planes are followed: (S^-1 X / c, S P c) takes the place of (X, P), with a
+// symmetric S.
+struct Balance {
+  Eigen::MatrixXd s;
+  Eigen::MatrixXd inverse;
+};
+
+// An orthonormal basis of what a symplectic map, 2n x 2n, makes of a plane, both planes in balanced
+// coordinates of scale c. Not finite where the map makes too much of it.
+Eigen::MatrixXd image_of(const Eigen::MatrixXd& map,
+                         const Balance& balance,
+                         double c,
+                         const Eigen::MatrixXd& plane);
+
 // What X P^-1, a symmetric matrix, says of a plane.
 struct Graph {
   int kernel = 0;           // dimension of the kernel of X, up to round-off

@@ -57,7 +57,7 @@ Units::Units(const BoundaryValueProblem& problem, const std::vector<double>& x) 
   scaled_ = true;
 }
 
-MatrixXd Units::map(const MatrixXd& m) const {
+MatrixXd Units::map(MatrixXd m) const {
   if (!scaled_) return m;
   const auto n = e_.rows();
   MatrixXd scaled(2 * n, 2 * n);

@@ -24,7 +24,7 @@ class Units {
 
   [[nodiscard]] bool scaled() const { return scaled_; }
   // The tangent flow m, 2n x 2n, and the columns of end_point_tangent().
-  [[nodiscard]] Eigen::MatrixXd map(const Eigen::MatrixXd& m) const;
+  [[nodiscard]] Eigen::MatrixXd map(Eigen::MatrixXd m) const;
   [[nodiscard]] Eigen::MatrixXd tangent(const Eigen::MatrixXd& columns) const;
   // The norm of unknowns of the start: momenta where no end is free.
   [[nodiscard]] double size(const Eigen::VectorXd& p) const;

@@ -124,6 +124,11 @@ std::vector<RelaxedStart> relaxed_starts(const MassLadder& ladder,
                                          std::span<const StartDraw> draws) {
   const auto count = static_cast<int>(draws.size());
   std::vector<Start> starts(draws.size());
+  std::map<int, StartScales> scales;  // on each rung
+  for (const auto& [number, intervals] : draws) {
+    const int rung = ladder.rung_of(number, intervals);
+    if (!near && scales.count(rung) == 0) scales[rung] = start_scales(ladder.on(rung));
+  }
   parallel_for(count, options.threads, [&](int i) {
     const auto& [number, intervals] = draws[i];
     if (near) {
@@ -131,7 +136,7 @@ std::vector<RelaxedStart> relaxed_starts(const MassLadder& ladder,
       return;
     }
     const int rung = ladder.rung_of(number, intervals);
-    starts[i] = make_start(ladder.on(rung), options.seed, number, intervals);
+    starts[i] = make_start(ladder.on(rung), scales.at(rung), options.seed, number, intervals);
     starts[i].path.rung = rung;
   });
   std::vector<RelaxedStart> results = relaxed(ladder, options, starts);

@@ -9,7 +9,6 @@
 #include "carnot/shooting/linear/round_off.h"
 #include "carnot/shooting/problem/ends.h"
 #include "carnot/shooting/problem/manifold.h"
-#include "carnot/shooting/problem/scales.h"
 #include "carnot/shooting/search/seed_words.h"
 
 namespace carnot::internal {
@@ -146,7 +145,15 @@ double penalty_against_collapse(const StartScales& scales, double unit) {
 
 }  // namespace
 
-Start make_start(const BoundaryValueProblem& asked, std::uint64_t seed, int i, int intervals) {
+Start make_start(const BoundaryValueProblem& problem, std::uint64_t seed, int i, int intervals) {
+  return make_start(problem, start_scales(problem), seed, i, intervals);
+}
+
+Start make_start(const BoundaryValueProblem& asked,
+                 const StartScales& scales,
+                 std::uint64_t seed,
+                 int i,
+                 int intervals) {
   constexpr double kMaxPenalty = 1e6;  // beyond this the least squares lose their digits
   constexpr std::array kFactors{1.0, 0.6, 2.0};
   constexpr std::array kPenalties{1.0, 2.5, 1.0};
@@ -155,7 +162,6 @@ Start make_start(const BoundaryValueProblem& asked, std::uint64_t seed, int i, i
   constexpr double kStiff = 100;
   constexpr double kShrink = 0.7;  // of a wiggle that leaves the chart
   const int n = asked.dynamics.dof;
-  const StartScales scales = start_scales(asked);
   const double ratio = scales.distance / scales.radian;
   const bool against = scales.violation > 0.1 * scales.distance && ratio < 0.5;
   const std::array exponents{1.0 / 3, 0.5, against ? 1.0 / 3 : 1.0};
@@ -166,11 +172,12 @@ Start make_start(const BoundaryValueProblem& asked, std::uint64_t seed, int i, i
 
   Start start;
   start.path = wiggled_line(problem, intervals, size, scales, a);
-  if (in_one_chart(problem.dynamics, wiggled_line(problem, intervals, 0, scales, a))) {
-    while (!in_one_chart(problem.dynamics, start.path)) {
+  if (!in_one_chart(problem.dynamics, start.path) &&
+      in_one_chart(problem.dynamics, wiggled_line(problem, intervals, 0, scales, a))) {
+    do {
       size *= kShrink;
       start.path = wiggled_line(problem, intervals, size, scales, a);
-    }
+    } while (!in_one_chart(problem.dynamics, start.path));
   }
   const double penalty = penalty_against_collapse(scales, unit) * kPenalties[i / 9 % 3];
   start.relaxation.caution = i % 2 == 0 ? 1e-4 : 1e-2;

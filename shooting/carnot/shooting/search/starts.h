@@ -23,6 +23,7 @@
 #include "carnot/shooting/boundary_value_problem.h"
 #include "carnot/shooting/path/path.h"
 #include "carnot/shooting/path/relaxation.h"
+#include "carnot/shooting/problem/scales.h"
 
 namespace carnot::internal {
 
@@ -36,5 +37,11 @@ Start make_start(const BoundaryValueProblem& problem,
                  std::uint64_t seed,
                  int i,
                  int intervals = 32);
+// The same of a problem whose scales are known.
+Start make_start(const BoundaryValueProblem& problem,
+                 const StartScales& scales,
+                 std::uint64_t seed,
+                 int i,
+                 int intervals);
 
 }  // namespace carnot::internal

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "carnot/shooting/linear/round_off.h"
 
@@ -26,14 +29,24 @@ std::vector<double> times_of_segment(const BoundaryValueProblem& problem,
   return times;
 }
 
+template <class T>
+void append(std::vector<T>& to, std::vector<T>& more) {
+  if (to.empty()) {
+    to = std::move(more);
+  } else {
+    to.insert(to.end(), std::move_iterator(more.begin()), std::move_iterator(more.end()));
+  }
+}
+
 // `work` was done before.
-void append(Trajectory& to, const Trajectory& from, double work) {
-  to.t.insert(to.t.end(), from.t.begin(), from.t.end());
-  to.q.insert(to.q.end(), from.q.begin(), from.q.end());
-  to.p.insert(to.p.end(), from.p.begin(), from.p.end());
-  to.lambda.insert(to.lambda.end(), from.lambda.begin(), from.lambda.end());
-  to.hamiltonian.insert(to.hamiltonian.end(), from.hamiltonian.begin(), from.hamiltonian.end());
-  for (const double more : from.work) to.work.push_back(work + more);
+void append(Trajectory& to, Trajectory more, double work) {
+  for (double& done : more.work) done += work;
+  append(to.t, more.t);
+  append(to.q, more.q);
+  append(to.p, more.p);
+  append(to.lambda, more.lambda);
+  append(to.hamiltonian, more.hamiltonian);
+  append(to.work, more.work);
 }
 
 }  // namespace
@@ -56,7 +69,7 @@ FlowSummary survey(const BoundaryValueProblem& problem,
             .evaluate(plan.start, at.first(knots.dof), at.subspan(knots.dof), velocity, lambda)
             .hamiltonian;
     if (i == 0) initial = energy;
-    const FlowSummary part = problem.dynamics.monitored_flow(plan, z, options);
+    FlowSummary part = problem.dynamics.monitored_flow(plan, z, options);
     total.report = part.report;
     if (!part.completed()) return total;
     total.action += part.action;
@@ -64,7 +77,7 @@ FlowSummary survey(const BoundaryValueProblem& problem,
     total.energy_drift =
         std::max(total.energy_drift, part.energy_drift + std::abs(energy - initial));
     total.constraint_error = std::max(total.constraint_error, part.constraint_error);
-    append(total.trajectory, part.trajectory, total.work);
+    append(total.trajectory, std::move(part.trajectory), total.work);
     total.work += part.work;
   }
   return total;
