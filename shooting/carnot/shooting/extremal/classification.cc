@@ -33,7 +33,7 @@ void add_extremes(const BoundaryValueProblem& problem,
                   long steps,
                   Geodesic& geodesic) {
   if (problem.dynamics.info.extremes.empty()) return;
-  set_extremes(problem, survey(problem, knots, steps, 2 * steps + 1).trajectory.q, geodesic);
+  set_extremes(problem, samples_of(problem, knots, steps, 2 * steps + 1).q, geodesic);
 }
 
 // The polynomial through `count` values at 0, 1, 2, ..., at x: Neville's scheme.
@@ -115,7 +115,7 @@ std::optional<int> family_dimension(const BoundaryValueProblem& problem,
 bool passes_singularity(const BoundaryValueProblem& problem, const Extremal& extremal) {
   if (problem.dynamics.calls.chart == nullptr) return false;
   const long steps = extremal.geodesic.plan.count;
-  const Trajectory path = survey(problem, extremal.knots, steps, steps + 1).trajectory;
+  const Trajectory path = samples_of(problem, extremal.knots, steps, steps + 1);
   const auto parted = [&](const std::vector<double>& a, const std::vector<double>& b) {
     return !same_chart(problem.dynamics, a.data(), b.data());
   };
@@ -198,7 +198,7 @@ void complete(const BoundaryValueProblem& problem, long samples, Extremal& extre
   if (geodesic.label == Label::kAbnormal) return;
   const long steps = geodesic.plan.count;
   add_extremes(problem, extremal.knots, steps, geodesic);
-  if (samples > 0) geodesic.trajectory = survey(problem, extremal.knots, steps, samples).trajectory;
+  if (samples > 0) geodesic.trajectory = samples_of(problem, extremal.knots, steps, samples);
   const ConjugateTimes& conjugate = conjugate_times_of(problem, extremal);
   if (conjugate.known) geodesic.conjugate_times = conjugate.times;
   set_label(problem, conjugate, geodesic);

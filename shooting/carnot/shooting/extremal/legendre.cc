@@ -16,7 +16,7 @@ bool satisfies_legendre(const BoundaryValueProblem& problem, const Knots& knots,
   if (dynamics.has_transcription() || dynamics.holonomic > 0) return true;
   const int n = dynamics.dof;
   const void* const system = dynamics.system.get();
-  const Trajectory path = survey(problem, knots, steps, kSamples).trajectory;
+  const Trajectory path = samples_of(problem, knots, steps, kSamples);
   std::vector<double> y(kMostAlgebraic * n);
   dynamics.functions->branch(system, y.data());
   std::vector<double> z_dot(2 * n);

@@ -100,8 +100,8 @@ std::optional<LimitedExtremal> LimitedFinish::by_flow(Knots knots) const {
   complete(shared_.unlimited, options_.samples, *verified.extremal);
   Geodesic geodesic = std::move(verified.extremal->geodesic);
   const Knots& found = verified.extremal->knots;
-  shared_.report_limits(
-      survey(shared_.unlimited, found, geodesic.plan.count, kDense + 1).trajectory.q, geodesic);
+  shared_.report_limits(samples_of(shared_.unlimited, found, geodesic.plan.count, kDense + 1).q,
+                        geodesic);
   if (!shared_.keeps_to_limits(geodesic)) return std::nullopt;
   return LimitedExtremal{std::move(geodesic), std::nullopt};
 }

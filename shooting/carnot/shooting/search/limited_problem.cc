@@ -91,7 +91,7 @@ std::optional<Geodesic> LimitedProblem::within(const Geodesic& geodesic) const {
   z.insert(z.end(), geodesic.p0.begin(), geodesic.p0.end());
   const Knots knots = knots_of(unlimited, start_unknowns(unlimited, z.data()), 1, 1);
   for (const int samples : kSamples) {
-    report_limits(survey(unlimited, knots, geodesic.plan.count, samples).trajectory.q, judged);
+    report_limits(samples_of(unlimited, knots, geodesic.plan.count, samples).q, judged);
     if (!keeps_to_limits(judged)) return std::nullopt;
   }
   return judged;

@@ -83,4 +83,13 @@ FlowSummary survey(const BoundaryValueProblem& problem,
   return total;
 }
 
+Trajectory samples_of(const BoundaryValueProblem& problem,
+                      const Knots& knots,
+                      long steps,
+                      long samples) {
+  const long intervals = std::max(1L, samples - 1);
+  const long each = (steps + intervals - 1) / intervals;
+  return survey(problem, knots, each * intervals, samples).trajectory;
+}
+
 }  // namespace carnot::internal

@@ -13,4 +13,12 @@ FlowSummary survey(const BoundaryValueProblem& problem,
                    long steps,
                    long samples);
 
+// The samples alone, by as many steps or a few more, so that each ends a step. A sample within a
+// step takes a step of its own, from the node before, and more iterations for it than the steps of
+// a row.
+Trajectory samples_of(const BoundaryValueProblem& problem,
+                      const Knots& knots,
+                      long steps,
+                      long samples);
+
 }  // namespace carnot::internal
