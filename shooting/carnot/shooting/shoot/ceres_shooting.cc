@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -37,16 +39,33 @@ std::vector<Beginning> begin(const ShootingEquations& equations, const Knots& kn
   return all;
 }
 
+// What the segments tell of the search that they are all part of.
+struct Course {
+  double tolerance;
+  bool lost = false;            // derivatives failed, or the search is stopped
+  std::vector<double> squares;  // of the residuals of each segment where Ceres tried last
+
+  // Whether the knots are joined there, so that the search ends.
+  [[nodiscard]] bool joined() const {
+    constexpr double kSurely = 0.5;  // whatever order Ceres sums up in
+    return std::accumulate(squares.begin(), squares.end(), 0.0) < kSurely * tolerance * tolerance;
+  }
+};
+
 // Parameter blocks: q_i, p_i and, but for the last segment, q_{i+1}, p_{i+1}.
 //
 // Ceres prints an error where its first evaluation fails, and where derivatives fail at a place
 // that it has stepped to. A library must not print. So the first evaluation is made before, and
 // derivatives that fail are told by `lost`, with zeros in their place. So is a search that is
 // stopped; its residuals are large.
+//
+// Ceres asks for derivatives wherever it has stepped to. Where the knots are joined nothing is done
+// with them, and there are zeros in their place, too: polishing takes two evaluations of them in
+// place of three.
 class Jump final : public ceres::CostFunction {
  public:
-  Jump(const ShootingEquations& equations, int i, Beginning beginning, bool& lost)
-      : equations_(equations), i_(i), beginning_(std::move(beginning)), lost_(lost) {
+  Jump(const ShootingEquations& equations, int i, Beginning beginning, Course& course)
+      : equations_(equations), i_(i), beginning_(std::move(beginning)), course_(course) {
     const int n = equations.dof();
     const int blocks = i + 1 == equations.segments() ? 2 : 4;
     mutable_parameter_block_sizes()->assign(blocks, n);
@@ -62,6 +81,8 @@ class Jump final : public ceres::CostFunction {
     if (z == beginning_.z) {
       std::copy_n(beginning_.residual.begin(), num_residuals(), residuals);
       jacobian = beginning_.jacobian;
+    } else if (jacobians != nullptr && z == tried_.z && course_.joined()) {
+      std::copy_n(tried_.residual.begin(), num_residuals(), residuals);
     } else if (!equations_.evaluate(i_,
                                     z.data(),
                                     z.data() + 2 * n,
@@ -71,9 +92,10 @@ class Jump final : public ceres::CostFunction {
                          equations_.evaluate(i_, z.data(), z.data() + 2 * n, residuals, nullptr);
       if (!flows && !equations_.stopped()) return false;
       if (!flows) std::fill_n(residuals, num_residuals(), kStopped);
-      lost_ = true;
+      course_.lost = true;
       std::fill(jacobian.begin(), jacobian.end(), 0.0);
     }
+    if (jacobians == nullptr) note(std::move(z), residuals);
     for (int b = 0; jacobians != nullptr && b < blocks; ++b) {
       if (jacobians[b] == nullptr) continue;
       for (int row = 0; row < num_residuals(); ++row) {
@@ -89,22 +111,32 @@ class Jump final : public ceres::CostFunction {
 
  private:
   static constexpr double kStopped = 1e3;
+
+  void note(std::vector<double> z, const double* residuals) const {
+    tried_.z = std::move(z);
+    tried_.residual.assign(residuals, residuals + num_residuals());
+    double& square = course_.squares[static_cast<std::size_t>(i_)];
+    square = 0;
+    for (const double r : tried_.residual) square += r * r;
+  }
+
   const ShootingEquations& equations_;
   int i_;
   Beginning beginning_;
-  bool& lost_;
+  mutable Beginning tried_;  // without derivatives
+  Course& course_;
 };
 
 // Stops when the jumps are below the tolerance, when they are far from that and hardly fall, or
 // when there are no derivatives to go on with.
 class StopWhenJoined final : public ceres::IterationCallback {
  public:
-  StopWhenJoined(const ShootingOptions& options, const bool& lost)
-      : cost_(0.5 * options.tolerance * options.tolerance), near_(options.near), lost_(lost) {}
+  StopWhenJoined(const ShootingOptions& options, const Course& course)
+      : cost_(0.5 * options.tolerance * options.tolerance), near_(options.near), course_(course) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     if (summary.iteration == 0) first_ = summary.cost;
     if (summary.cost <= cost_) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
-    if (lost_) return ceres::SOLVER_ABORT;
+    if (course_.lost) return ceres::SOLVER_ABORT;
     const bool hardly_falls = near_ && summary.cost > kHardlySmaller * kHardlySmaller * first_;
     return summary.iteration == kTrials && hardly_falls ? ceres::SOLVER_ABORT
                                                         : ceres::SOLVER_CONTINUE;
@@ -113,7 +145,7 @@ class StopWhenJoined final : public ceres::IterationCallback {
  private:
   double cost_;
   bool near_;
-  const bool& lost_;
+  const Course& course_;
   double first_ = 0;
 };
 
@@ -170,11 +202,12 @@ Shooting shoot_with_ceres(const BoundaryValueProblem& problem,
     result.growth = std::max(result.growth, equations.growth(i, jacobian.data()));
   }
   if (result.growth > options.max_growth) return result;
-  bool lost = false;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Course course{options.tolerance, false, std::vector<double>(knots.segments, kInfinity)};
   ceres::Problem joined;
   for (int i = 0; i < knots.segments; ++i) {
     double* z = knots.at(i);
-    auto* jump = new Jump(equations, i, std::move(beginnings[static_cast<std::size_t>(i)]), lost);
+    auto* jump = new Jump(equations, i, std::move(beginnings[static_cast<std::size_t>(i)]), course);
     if (i + 1 == knots.segments) {
       joined.AddResidualBlock(jump, nullptr, z, z + n);
     } else {
@@ -182,7 +215,7 @@ Shooting shoot_with_ceres(const BoundaryValueProblem& problem,
     }
   }
   hold_start(problem, knots, joined);
-  StopWhenJoined stop(options, lost);
+  StopWhenJoined stop(options, course);
   ceres::Solver::Options solver = solver_options(problem, options);
   solver.callbacks.push_back(&stop);
   ceres::Solver::Summary summary;
