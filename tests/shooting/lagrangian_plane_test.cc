@@ -80,7 +80,9 @@ TEST(LagrangianPlane, PhasesAreThoseOfTheUnitaryMatrix) {
       const Eigen::MatrixXcd shifted =
           w - std::polar(1.0, phases[j]) * Eigen::MatrixXcd::Identity(n, n);
       EXPECT_LE(std::abs(shifted.determinant()), kOfEight);
-      if (j > 0) EXPECT_GE(std::abs(phases[j]), std::abs(phases[j - 1]));
+      if (j > 0) {
+        EXPECT_GE(std::abs(phases[j]), std::abs(phases[j - 1]));
+      }
     }
   }
 }
