@@ -122,17 +122,34 @@ std::vector<std::size_t> DiscreteList::take_promising(std::vector<std::size_t>& 
   return promising;
 }
 
-std::vector<std::size_t> DiscreteList::beyond_rivals(const std::vector<std::size_t>& refined,
+std::vector<std::size_t> DiscreteList::perhaps_least(const std::vector<std::size_t>& refined,
                                                      double least) const {
   for (const std::size_t i : refined) {
     least = std::min(least, list_[i].estimate + list_[i].uncertainty);
   }
-  const double highest = least + ExtremalList::kRival * std::abs(least);
-  std::vector<std::size_t> beyond;
-  std::copy_if(refined.begin(), refined.end(), std::back_inserter(beyond), [&](std::size_t i) {
-    return list_[i].estimate - list_[i].uncertainty > highest;
+  std::vector<std::size_t> perhaps;
+  std::copy_if(refined.begin(), refined.end(), std::back_inserter(perhaps), [&](std::size_t i) {
+    return list_[i].estimate - list_[i].uncertainty <= least;
   });
-  return beyond;
+  return perhaps;
+}
+
+int DiscreteList::rivals_given_up(const ExtremalList& extremals) const {
+  const double least = extremals.least_action();
+  const double highest = least + ExtremalList::kRival * std::abs(least);
+  std::map<int, int> rivals;  // by intervals
+  int most = 0;
+  for (const DiscreteExtremal& known : list_) {
+    if (known.fate != Fate::kGivenUp || !std::isfinite(known.uncertainty)) continue;
+    const bool is_listed =
+        std::any_of(extremals.begin(), extremals.end(), [&](const Extremal& one) {
+          return known.foretells(one.geodesic.action);
+        });
+    if (!is_listed && known.estimate <= highest) {
+      most = std::max(most, ++rivals[known.path.intervals]);
+    }
+  }
+  return most;
 }
 
 Hits DiscreteList::give_up(const std::vector<std::size_t>& pending) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <utility>
 
 #include "carnot/numerics/parallel.h"
@@ -130,6 +132,7 @@ bool Search::best_is_passed() {
 bool Search::settled() const {
   if (policy_.wants_more()) return false;
   Competition competition = extremals_.competition();
+  competition.rivals += discrete_.rivals_given_up(extremals_);
   competition.missed = missed_estimate(hits());
   return policy_.ends(tally_, competition);
 }
@@ -169,8 +172,11 @@ Search::Polished Search::absorb(const std::vector<RelaxedStart>& starts, const H
       break;
     }
     Refinements refined = refine_all(next, tally);
-    if (only_least) give_up_beyond_rivals(refined);
-    polish_all(refined, tally);
+    if (only_least) {
+      polish_least(std::move(refined), tally);
+    } else {
+      polish_all(refined, tally);
+    }
   }
   return tally;
 }
@@ -196,15 +202,25 @@ Search::Refinements Search::refine_all(const std::vector<std::size_t>& indices, 
   return refined;
 }
 
-void Search::give_up_beyond_rivals(Refinements& refined) {
-  std::vector<std::size_t> indices;
-  for (const auto& [index, refinement] : refined) indices.push_back(index);
-  const double infinity = std::numeric_limits<double>::infinity();
-  const double least = extremals_.empty() ? infinity : extremals_.least_action();
-  const std::vector<std::size_t> beyond = discrete_.beyond_rivals(indices, least);
-  tally_.converged += discrete_.give_up(beyond).all();
-  std::erase_if(refined,
-                [&](const auto& item) { return discrete_[item.first].fate == Fate::kGivenUp; });
+void Search::polish_least(Refinements refined, Polished& tally) {
+  for (;;) {
+    std::vector<std::size_t> indices;
+    for (const auto& [index, refinement] : refined) indices.push_back(index);
+    const double infinity = std::numeric_limits<double>::infinity();
+    const double least = extremals_.empty() ? infinity : extremals_.least_action();
+    const std::vector<std::size_t> next = discrete_.perhaps_least(indices, least);
+    if (next.empty()) {
+      tally_.converged += discrete_.give_up(indices).all();
+      return;
+    }
+    const auto others = std::stable_partition(refined.begin(), refined.end(), [&](auto& item) {
+      return std::find(next.begin(), next.end(), item.first) != next.end();
+    });
+    Refinements rest(std::make_move_iterator(others), std::make_move_iterator(refined.end()));
+    refined.erase(others, refined.end());
+    polish_all(refined, tally);
+    refined = std::move(rest);
+  }
 }
 
 void Search::polish_all(const Refinements& refined, Polished& tally) {
