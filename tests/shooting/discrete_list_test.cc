@@ -186,26 +186,18 @@ TEST_F(DiscreteListTest, FinerGridsTellWhatMayBeLeast) {
   EXPECT_THAT(list.perhaps_least({0, 3}, 1e300), testing::ElementsAre(0, 3)) << "not refined";
 }
 
-// Near the least action by their estimates, and not what the list has already.
-TEST_F(DiscreteListTest, CountsRivalsThatAreGivenUp) {
-  Extremal best;
-  best.geodesic.action = 1;
-  extremals.add(best);
-  Extremal other;
-  other.geodesic.action = 1.02;
-  extremals.add(other);
-  for (int i = 0; i < 5; ++i) list.add(wiggle(0.1 * (i + 1)), kOneStart);
-  for (int i = 5; i < 7; ++i) list.add(wiggle(0.1 * (i + 1), 64), kOneStart);
-  const std::vector estimates{1.01, 1.02, 1.04, 1.015, 1.016, 1.01, 1.015};
-  for (std::size_t i = 0; i < estimates.size(); ++i) {
-    list[i].estimate = estimates[i];
-    list[i].uncertainty = 1e-4;
+TEST_F(DiscreteListTest, RivalsAreToldByFinerGrids) {
+  for (const double size : {0.1, 0.11, 0.5}) list.add(wiggle(size), kOneStart);
+  for (std::size_t i = 0; i < 3; ++i) {
+    list[i].estimate = list[i].action;
+    list[i].uncertainty = 0.01 * list[i].action;
   }
-  EXPECT_EQ(list.rivals_given_up(extremals), 0) << "they are pending";
-  list.give_up({0, 1, 2, 3, 4, 5, 6});
-  EXPECT_EQ(list.rivals_given_up(extremals), 3) << "of the coarse grid";
-  list[4] = DiscreteExtremal{list[4].path, 1, Fate::kGivenUp, 0, {}, 0, {}};
-  EXPECT_EQ(list.rivals_given_up(extremals), 2) << "nothing is known of one that was not refined";
+  EXPECT_THAT(list.beyond_rivals({0, 1, 2}, list[0].action), testing::ElementsAre(2));
+  EXPECT_THAT(list.beyond_rivals({0, 1, 2}, 0.5 * list[0].action), testing::ElementsAre(0, 1, 2));
+  list[2].uncertainty = 2;
+  EXPECT_TRUE(list.beyond_rivals({0, 1, 2}, list[0].action).empty()) << "it may be one";
+  list.add(wiggle(0.6), kOneStart);
+  EXPECT_TRUE(list.beyond_rivals({0, 3}, list[0].action).empty()) << "not refined: it may be one";
 }
 
 TEST_F(DiscreteListTest, GivesUp) {

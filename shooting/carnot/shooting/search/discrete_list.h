@@ -78,12 +78,12 @@ class DiscreteList {
   // than each other, as far as their grids tell.
   [[nodiscard]] std::vector<std::size_t> perhaps_least(const std::vector<std::size_t>& refined,
                                                        double least) const;
+  // Those of `refined` that are no rivals of the best extremal.
+  [[nodiscard]] std::vector<std::size_t> beyond_rivals(const std::vector<std::size_t>& refined,
+                                                       double least) const;
   // Gives these up. Returns how often they were seen.
   Hits give_up(const std::vector<std::size_t>& pending);
 
-  // How many of those given up are rivals of the best of `extremals`, by their estimates, and none
-  // of the list: of the grid where they are most, for another grid shows the same ones again.
-  [[nodiscard]] int rivals_given_up(const ExtremalList& extremals) const;
   // How often each of those given up was seen: of the grid where that was most often, for another
   // grid shows the same ones again.
   [[nodiscard]] std::vector<Hits> hits_given_up() const;

@@ -132,7 +132,6 @@ bool Search::best_is_passed() {
 bool Search::settled() const {
   if (policy_.wants_more()) return false;
   Competition competition = extremals_.competition();
-  competition.rivals += discrete_.rivals_given_up(extremals_);
   competition.missed = missed_estimate(hits());
   return policy_.ends(tally_, competition);
 }
@@ -203,24 +202,33 @@ Search::Refinements Search::refine_all(const std::vector<std::size_t>& indices, 
 }
 
 void Search::polish_least(Refinements refined, Polished& tally) {
-  for (;;) {
-    std::vector<std::size_t> indices;
-    for (const auto& [index, refinement] : refined) indices.push_back(index);
+  const auto indices = [&] {
+    std::vector<std::size_t> of_refined;
+    for (const auto& [index, refinement] : refined) of_refined.push_back(index);
+    return of_refined;
+  };
+  // Takes those with these indices out of what is refined.
+  const auto take = [&](const std::vector<std::size_t>& chosen) {
+    const auto others = std::stable_partition(refined.begin(), refined.end(), [&](auto& item) {
+      return std::find(chosen.begin(), chosen.end(), item.first) == chosen.end();
+    });
+    Refinements taken(std::make_move_iterator(others), std::make_move_iterator(refined.end()));
+    refined.erase(others, refined.end());
+    return taken;
+  };
+  while (!refined.empty()) {
     const double infinity = std::numeric_limits<double>::infinity();
     const double least = extremals_.empty() ? infinity : extremals_.least_action();
-    const std::vector<std::size_t> next = discrete_.perhaps_least(indices, least);
-    if (next.empty()) {
-      tally_.converged += discrete_.give_up(indices).all();
-      return;
-    }
-    const auto others = std::stable_partition(refined.begin(), refined.end(), [&](auto& item) {
-      return std::find(next.begin(), next.end(), item.first) != next.end();
-    });
-    Refinements rest(std::make_move_iterator(others), std::make_move_iterator(refined.end()));
-    refined.erase(others, refined.end());
-    polish_all(refined, tally);
-    refined = std::move(rest);
+    const std::vector<std::size_t> next = discrete_.perhaps_least(indices(), least);
+    if (next.empty()) break;
+    polish_all(take(next), tally);
   }
+  if (refined.empty()) return;
+  const std::vector<std::size_t> beyond =
+      discrete_.beyond_rivals(indices(), extremals_.least_action());
+  tally_.converged += discrete_.give_up(beyond).all();
+  take(beyond);
+  polish_all(refined, tally);
 }
 
 void Search::polish_all(const Refinements& refined, Polished& tally) {

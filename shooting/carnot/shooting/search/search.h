@@ -133,7 +133,7 @@ class Search {
   // New discrete extremals on finer grids, by their indices; without those that become known ones.
   using Refinements = std::vector<std::pair<std::size_t, Refinement>>;
   Refinements refine_all(const std::vector<std::size_t>& indices, Polished& tally);
-  // Polishes those that may have the least action, and gives up the others.
+  // Polishes those that may have the least action, then their rivals, and gives up the others.
   void polish_least(Refinements refined, Polished& tally);
   void polish_all(const Refinements& refined, Polished& tally);
   // Adds an extremal that a start led to, if it did, and counts the hit.
