@@ -471,6 +471,17 @@ TEST(LimitedGeodesics, MayEndOnAWall) {
   }
 }
 
+// What rounding puts beyond a wall is on it; what is further away is refused.
+TEST(LimitedGeodesics, EndsOnAWallMayBeBeyondItByARounding) {
+  BoundaryValueProblem problem = parking("limit -0.3 < phi - theta < 0.3 \"steering\"\n");
+  problem.to[3] = std::nextafter(0.3, 1.0);
+  const Geodesic geodesic = best(problem);
+  EXPECT_NEAR(geodesic.trajectory.q.back()[3], 0.3, 1e-12);
+  expect_kept(problem, geodesic);
+  problem.to[3] = 0.3 * (1 + 1e-12);
+  EXPECT_EQ(solve(problem).reason, Reason::kLimitAtEnd);
+}
+
 // An image of the target that is beyond a limit is none to go to; the others are.
 TEST(LimitedGeodesics, GoToTheImagesThatKeepToLimits) {
   BoundaryValueProblem problem = parking("limit -0.5 < phi - theta < 0.5 \"steering\"\n");

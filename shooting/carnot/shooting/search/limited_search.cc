@@ -8,6 +8,7 @@
 
 #include "carnot/numerics/parallel.h"
 #include "carnot/shooting/extremal/ranking.h"
+#include "carnot/shooting/linear/round_off.h"
 #include "carnot/shooting/path/relaxation.h"
 #include "carnot/shooting/problem/stop.h"
 #include "carnot/shooting/search/candidate_list.h"
@@ -324,6 +325,8 @@ LimitedAnswer LimitedSearch::run() {
 }  // namespace
 
 std::string beyond_limit_at_end(const BoundaryValueProblem& problem) {
+  // An end on a wall, as the free end of another answer may be, is beyond it by a rounding.
+  constexpr double kRoundings = 8;
   const int n = problem.dynamics.dof;
   std::vector<double> gradient(n);
   for (const bool start : {true, false}) {
@@ -335,7 +338,8 @@ std::string beyond_limit_at_end(const BoundaryValueProblem& problem) {
         const bool free = start ? problem.is_free_from(j) : problem.is_free_to(j);
         moves = moves || (free && gradient[j] != 0);
       }
-      if (moves || limit.slack(value) >= 0) continue;
+      const double rounded = kRoundings * kEpsilon * std::abs(value);
+      if (moves || limit.slack(value) >= -rounded) continue;
       const char* const end = start ? "start" : "target";
       std::ostringstream text;
       if (std::isnan(value)) {
