@@ -233,8 +233,10 @@ double longest_wanted(const std::vector<Extremal>& list, const GeodesicOptions& 
   return std::min(options.max_length, lengths[count - 1]);
 }
 
+// Of what is verified from knot to knot, `joined_samples` are recorded.
 GeodesicReport find_without_limits(const BoundaryValueProblem& asked,
-                                   const GeodesicOptions& options) {
+                                   const GeodesicOptions& options,
+                                   long joined_samples) {
   const auto began = std::chrono::steady_clock::now();
   const Stop stop(options.time_limit);
   GeodesicReport report;
@@ -267,7 +269,8 @@ GeodesicReport find_without_limits(const BoundaryValueProblem& asked,
   parallel_for(static_cast<int>(list.size()), thread_count(options.threads), [&](int i) {
     const Image& image = images[list[i].image];
     list[i].geodesic.windings = image.windings;
-    complete(found.problems[list[i].image], options.samples, list[i]);
+    const bool joined = list[i].geodesic.verification == Verification::kKnots;
+    complete(found.problems[list[i].image], joined ? joined_samples : options.samples, list[i]);
     if (!scales.trivial()) {
       BoundaryValueProblem of_image = own;
       for (std::size_t j = 0; j < image.windings.size(); ++j) {
@@ -367,16 +370,17 @@ GeodesicReport find_with_limits(const BoundaryValueProblem& asked, const Geodesi
   // A few starts tell whether the least action is beyond a limit. Only where it is not must it be
   // known for sure: then it is the answer.
   GeodesicOptions all_starts = options;
-  all_starts.abnormal = false;                        // those are not followed along limits
-  const long stride = dense_stride(options.samples);  // paths are judged at many times
-  all_starts.samples = stride * std::max(1L, options.samples - 1) + 1;
+  all_starts.abnormal = false;  // those are not followed along limits
+  // What joins knots is judged by many samples, for p(0) alone does not tell where it goes.
+  const long stride = dense_stride(options.samples);
+  const long dense = stride * std::max(1L, options.samples - 1) + 1;
   GeodesicOptions few = all_starts;
   if (options.starts == 0 && options.guess.empty()) few.starts = kFewStarts;
-  report = find_without_limits(problem, few);
+  report = find_without_limits(problem, few, dense);
   const bool keeps = !report.geodesics.empty() && is_within_limits(asked, report.geodesics.front());
   if (few.starts != options.starts && report.status != GeodesicStatus::kInterrupted && keeps) {
     all_starts.time_limit = stop.left() > 0 ? stop.left() : few.time_limit;
-    if (stop.left() > 0) report = find_without_limits(problem, all_starts);
+    if (stop.left() > 0) report = find_without_limits(problem, all_starts, dense);
   }
   if (report.status == GeodesicStatus::kInterrupted) return report;
   // The nearest images, and all that an extremal without limits was found for.
@@ -412,7 +416,7 @@ GeodesicReport find_with_limits(const BoundaryValueProblem& asked, const Geodesi
     report.converged_starts += answer.converged;
     for (Geodesic& geodesic : answer.geodesics) {
       geodesic.windings = image.windings;
-      if (geodesic.trajectory.t.size() == static_cast<std::size_t>(all_starts.samples)) {
+      if (geodesic.trajectory.t.size() == static_cast<std::size_t>(dense)) {
         geodesic.trajectory = every(geodesic.trajectory, stride, options.samples);
       }
       report.geodesics.push_back(std::move(geodesic));
@@ -468,7 +472,7 @@ void GeodesicOptions::validate(const BoundaryValueProblem& problem) const {
 GeodesicReport find_geodesics(const BoundaryValueProblem& problem, const GeodesicOptions& options) {
   problem.validate();
   options.validate(problem);
-  return problem.limits.empty() ? find_without_limits(problem, options)
+  return problem.limits.empty() ? find_without_limits(problem, options, options.samples)
                                 : find_with_limits(problem, options);
 }
 
