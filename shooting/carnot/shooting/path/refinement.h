@@ -13,6 +13,10 @@
 // On a long way with drift a coarse grid is late by a part of a revolution. Where Newton's method
 // does not find the fine counterpart at once, it follows it while what its equations leave at the
 // start is taken back (homotopy.h). Layers that light coordinates make ask for the same.
+//
+// A grid is evaluated eight intervals side by side. Several paths side by side (newton_lanes.h) are
+// not sooner done: there are three to five at once. Where three or more are, sideways parking takes
+// as long, and searches to random targets of trailer2 1.1 of the time.
 #pragma once
 
 #include <vector>
