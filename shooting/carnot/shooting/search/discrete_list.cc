@@ -129,7 +129,7 @@ std::vector<std::size_t> DiscreteList::perhaps_least(const std::vector<std::size
   }
   std::vector<std::size_t> perhaps;
   std::copy_if(refined.begin(), refined.end(), std::back_inserter(perhaps), [&](std::size_t i) {
-    return list_[i].estimate - list_[i].uncertainty <= least;
+    return !(list_[i].estimate - list_[i].uncertainty > least);  // nor where it is no number
   });
   return perhaps;
 }
