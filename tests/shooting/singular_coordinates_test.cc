@@ -46,6 +46,18 @@ TEST(SingularCoordinates, WhereTheStraightLinePassesAPathMay) {
   }
 }
 
+// Between ends that the singularity parts grids have extremals that nothing comes of. None of them
+// counts, not even where another one on its grid has less action.
+TEST(SingularCoordinates, NothingConvergesWhereNothingIsFound) {
+  GeodesicOptions options;
+  options.starts = 64;
+  const GeodesicReport report = find_geodesics(
+      test::satellite({0.7047151227967, -2.2398046046984, -2.9893508267848}), options);
+  EXPECT_TRUE(report.geodesics.empty());
+  EXPECT_EQ(report.reason, Reason::kNotJoined);
+  EXPECT_EQ(report.converged_starts, 0);
+}
+
 // The bicycle has a path of action 15.1 to here, on the way to shorter ones beyond delta = pi/2.
 TEST(SingularCoordinates, AnAnswerSaysWhereTheyStoodInTheWayOfOthers) {
   const GeodesicReport report = find_geodesics(sideways());
