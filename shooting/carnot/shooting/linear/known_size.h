@@ -18,7 +18,7 @@ namespace carnot::internal {
 // Eigen::Dynamic.
 template <class Run>
 auto with_known_size(Eigen::Index size, const Run& run) {
-  return with_known_width<2, 3, 4, 5, 6>(static_cast<int>(size), [&](auto known) {
+  return with_known_width<3, 4, 5>(static_cast<int>(size), [&](auto known) {
     constexpr int kSize = known == 0 ? Eigen::Dynamic : static_cast<int>(known);
     return run(std::integral_constant<int, kSize>{});
   });
