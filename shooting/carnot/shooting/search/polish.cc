@@ -14,7 +14,7 @@ namespace carnot::internal {
 namespace {
 
 // At least; divides the intervals of a path. Ceres factors a dense matrix of 2n unknowns a segment.
-// With 8 of them the median search takes 1.08 of the time for unicycle, 1.05 for vehicle and 1.06
+// With 8 of them the median search takes 1.08 of the time for unicycle, 1.07 for vehicle and 1.06
 // for sideways parking. Of 180 targets of twelve scenes, 60 of them up to 15 away, none gets
 // another action.
 constexpr int kSegments = 4;
