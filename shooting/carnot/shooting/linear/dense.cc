@@ -126,10 +126,8 @@ MatrixXd squared(const MatrixXd& a) {
 MatrixXd orthonormal(const MatrixXd& columns) {
   if (columns.rows() != 2 * columns.cols()) return qr_factors(columns).q;
   return with_known_size(columns.cols(), [&](auto known) -> MatrixXd {  // that of a plane
-    constexpr int kSize = known;
-    constexpr int kRows = kSize == Eigen::Dynamic ? Eigen::Dynamic : 2 * kSize;
-    Eigen::Matrix<double, kRows, kSize> q = columns;
-    Eigen::Matrix<double, kSize, kSize> r;
+    KnownPlane<known> q = columns;
+    KnownSquare<known> r;
     orthonormalise(q, r);
     return q;
   });
@@ -191,8 +189,8 @@ SymmetricEigen symmetric_eigen(const MatrixXd& a) {
   const Eigen::Index n = a.rows();
   if (!a.allFinite()) return {VectorXd::Constant(n, kNan), MatrixXd::Constant(n, n, kNan)};
   return with_known_size(n, [&](auto known) {
-    Eigen::Matrix<double, known, known> rest = a;
-    Eigen::Matrix<double, known, known> vectors;
+    KnownSquare<known> rest = a;
+    KnownSquare<known> vectors;
     diagonalise(rest, vectors);
     std::vector<Eigen::Index> order(n);
     std::iota(order.begin(), order.end(), 0);

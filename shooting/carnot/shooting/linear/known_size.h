@@ -24,6 +24,12 @@ auto with_known_size(Eigen::Index size, const Run& run) {
   });
 }
 
+// n x n, and 2n x n as a plane is, where n is known or Eigen::Dynamic.
+template <int n>
+using KnownSquare = Eigen::Matrix<double, n, n>;
+template <int n>
+using KnownPlane = Eigen::Matrix<double, n == Eigen::Dynamic ? n : 2 * n, n>;
+
 // The eigenvalues of a symmetric matrix, in no order, on the diagonal of `a`, and eigenvectors as
 // columns of `vectors`. Jacobi's method, row by row: small eigenvalues keep their digits beside
 // large ones. Some ten sweeps; ends where the entries beside the diagonal are round-off of those on

@@ -20,7 +20,7 @@ VectorXd phases_of(const MatrixXd& plane) {
   constexpr double kCommon = 1e-9;
   VectorXd angles = VectorXd::Constant(plane.cols(), std::numeric_limits<double>::quiet_NaN());
   with_known_size(plane.cols(), [&](auto known) {
-    using Square = Eigen::Matrix<double, known, known>;
+    using Square = KnownSquare<known>;
     const auto n = plane.cols();
     const Square x = plane.topRows(n);
     const Square p = plane.bottomRows(n);
@@ -53,16 +53,15 @@ VectorXd phases_of(const MatrixXd& plane) {
 
 MatrixXd image_of(const MatrixXd& map, const Balance& balance, double c, const MatrixXd& plane) {
   return with_known_size(plane.cols(), [&](auto known) -> MatrixXd {
-    constexpr int kSize = known;
-    constexpr int kRows = kSize == Eigen::Dynamic ? Eigen::Dynamic : 2 * kSize;
-    using Square = Eigen::Matrix<double, kSize, kSize>;
+    using Square = KnownSquare<known>;
+    using Plane = KnownPlane<known>;
     const auto n = plane.cols();
     const Square s = balance.s;
     const Square inverse = balance.inverse;
-    Eigen::Matrix<double, kRows, kSize> image(2 * n, n);
+    Plane image(2 * n, n);
     image.topRows(n) = c * Square(s.lazyProduct(plane.topRows(n)));
     image.bottomRows(n) = Square(inverse.lazyProduct(plane.bottomRows(n))) / c;
-    const Eigen::Matrix<double, kRows, kSize> moved = map.lazyProduct(image);
+    const Plane moved = map.lazyProduct(image);
     image.topRows(n) = Square(inverse.lazyProduct(moved.topRows(n))) / c;
     image.bottomRows(n) = c * Square(s.lazyProduct(moved.bottomRows(n)));
     Square r;

@@ -15,8 +15,8 @@
 // start is taken back (homotopy.h). Layers that light coordinates make ask for the same.
 //
 // A grid is evaluated eight intervals side by side. Several paths side by side (newton_lanes.h) are
-// not sooner done: there are three to five at once. Where three or more are, sideways parking takes
-// as long, and searches to random targets of trailer2 1.1 of the time.
+// not sooner done: there are three to five at once. With three or more in lanes sideways parking
+// took as long, and searches to random targets of trailer2 no less.
 #pragma once
 
 #include <vector>

@@ -78,7 +78,7 @@ class DiscreteList {
   // than each other, as far as their grids tell.
   [[nodiscard]] std::vector<std::size_t> perhaps_least(const std::vector<std::size_t>& refined,
                                                        double least) const;
-  // Those of `refined` that are no rivals of the best extremal.
+  // Those of `refined` that are no rivals of the best extremal, which has the action `least`.
   [[nodiscard]] std::vector<std::size_t> beyond_rivals(const std::vector<std::size_t>& refined,
                                                        double least) const;
   // Gives these up. Returns how often they were seen.

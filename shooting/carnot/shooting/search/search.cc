@@ -207,8 +207,7 @@ void Search::polish_least(Refinements refined, Polished& tally) {
     for (const auto& [index, refinement] : refined) of_refined.push_back(index);
     return of_refined;
   };
-  // Takes those with these indices out of what is refined.
-  const auto take = [&](const std::vector<std::size_t>& chosen) {
+  const auto take_out = [&](const std::vector<std::size_t>& chosen) {
     const auto others = std::stable_partition(refined.begin(), refined.end(), [&](auto& item) {
       return std::find(chosen.begin(), chosen.end(), item.first) == chosen.end();
     });
@@ -221,13 +220,13 @@ void Search::polish_least(Refinements refined, Polished& tally) {
     const double least = extremals_.empty() ? infinity : extremals_.least_action();
     const std::vector<std::size_t> next = discrete_.perhaps_least(indices(), least);
     if (next.empty()) break;
-    polish_all(take(next), tally);
+    polish_all(take_out(next), tally);  // where they come to nothing, others may be least
   }
   if (refined.empty()) return;
   const std::vector<std::size_t> beyond =
       discrete_.beyond_rivals(indices(), extremals_.least_action());
   tally_.converged += discrete_.give_up(beyond).all();
-  take(beyond);
+  take_out(beyond);
   polish_all(refined, tally);
 }
 
