@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "carnot/shooting/linear/kept_memory.h"
 #include "carnot/shooting/linear/known_width.h"
 #include "carnot/shooting/linear/lanes.h"
 
@@ -105,7 +106,7 @@ class BandedLanes {
 
   int size_;
   int width_;
-  std::vector<Lanes> a_;
+  std::vector<Lanes, KeptMemory<Lanes>> a_;
 };
 
 }  // namespace carnot::internal

@@ -42,9 +42,8 @@ struct ChosenLanes {
 };
 
 // `to` becomes `from` in the lanes of the mask.
-inline void take_lanes(const LanePack::Mask& mask,
-                       const std::vector<Lanes>& from,
-                       std::vector<Lanes>& to) {
+template <class LaneVector>
+void take_lanes(const LanePack::Mask& mask, const LaneVector& from, LaneVector& to) {
   for (std::size_t i = 0; i < to.size(); ++i) {
     to[i].set(select(mask, from[i].pack(), to[i].pack()));
   }
