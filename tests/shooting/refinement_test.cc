@@ -52,6 +52,24 @@ TEST(Refinement, GoesOnStepByStepWhereNewtonDoesNot) {
   for (std::size_t i = 0; i < last.q.size(); ++i) EXPECT_NEAR(last.q[i], found.q[i], kTightened);
 }
 
+// The last iteration counts as the others do.
+TEST(DiscreteNewton, SaysSoWhereItConvergesWithTheLastIteration) {
+  const BoundaryValueProblem problem = test::sideways();
+  const Path start = halved(test::tight_path(problem));
+  Path whole = start;
+  const DiscreteNewton all = tighten(problem, {}, whole);
+  ASSERT_TRUE(all.converged);
+  ASSERT_GT(all.iterations, 1);
+  for (int most = 1; most <= all.iterations; ++most) {
+    DiscreteNewtonOptions options;
+    options.max_iterations = most;
+    Path path = start;
+    const DiscreteNewton some = tighten(problem, options, path);
+    EXPECT_EQ(some.iterations, most);
+    EXPECT_EQ(some.converged, most == all.iterations);
+  }
+}
+
 TEST(Refinement, ChangesFallByFour) {
   const BoundaryValueProblem problem = test::sideways();
   const Path coarse = test::tight_path(problem);

@@ -40,9 +40,10 @@ DiscreteNewton tighten(const BoundaryValueProblem& problem,
   const double scale = options.scale > 0 ? options.scale : largest;
   result.residual = norm(residual);
   const auto is_solution = [&] { return result.residual <= options.tolerance * scale; };
-  while (result.iterations < options.max_iterations && std::isfinite(result.residual)) {
+  while (std::isfinite(result.residual)) {
     result.converged = is_solution();
-    if (result.converged || options.stop.reached()) break;
+    if (result.converged || result.iterations >= options.max_iterations) break;
+    if (options.stop.reached()) break;
     ++result.iterations;
     if (!matrix.factor()) break;
     direction = residual;
