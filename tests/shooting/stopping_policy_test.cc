@@ -103,34 +103,59 @@ TEST(StoppingPolicy, EndsWhenTheLeastActionIsHitOftenEnough) {
 
 TEST(StoppingPolicy, AnglesTakeMoreStartsAndMoreHits) {
   StoppingPolicy policy(options_for(1), true, false);
-  const Competition alone{{12, 0}, 1};
+  const Competition alone{{64, 0}, 1};
   ASSERT_TRUE(policy.may_end({12, 12, 0, 12}));
-  ASSERT_TRUE(policy.ends({12, 12, 0, 12}, alone));
+  ASSERT_TRUE(policy.ends({12, 12, 0, 12}, {{12, 0}, 1}));
   ASSERT_TRUE(policy.ends({80, 80, 0, 80}, {{20, 0}, 1, 50}));
-  policy.plan_for_angles();
-  EXPECT_FALSE(policy.may_end({31, 31, 0, 31}));
-  EXPECT_TRUE(policy.may_end({32, 32, 0, 0}));
-  EXPECT_TRUE(policy.ends({32, 32, 0, 32}, alone));
+  policy.plan_for_paths(3, true);
+  EXPECT_FALSE(policy.may_end({63, 63, 0, 63}));
+  EXPECT_TRUE(policy.may_end({64, 64, 0, 0}));
+  EXPECT_TRUE(policy.ends({64, 64, 0, 64}, alone));
   EXPECT_FALSE(policy.ends({300, 300, 0, 300}, {{199, 400}, 1, 50}));
   EXPECT_TRUE(policy.ends({300, 300, 0, 300}, {{200, 0}, 1, 50}));
   EXPECT_TRUE(policy.ends({300, 300, 0, 300}, {{199, 401}, 1, 50}));
-  // None ends before 32, so that no round has to be short.
-  for (const int starts : {0, 8, 16, 24, 32}) EXPECT_EQ(policy.round({starts, starts}), 8);
+  // None ends before 64, so that no round has to be short.
+  for (const int starts : {0, 8, 16, 24, 56, 64}) EXPECT_EQ(policy.round({starts, starts}), 8);
 }
 
-// One geodesic is worth twice as many starts there. What was asked for stays so.
-TEST(StoppingPolicy, AnglesHaveAHigherLimit) {
-  for (const int count : {1, 2}) {
-    StoppingPolicy policy(options_for(count), true, false);
-    const int before = policy.left({});
-    policy.plan_for_angles();
-    EXPECT_EQ(policy.left({}), count == 1 ? 2 * before : before);
+TEST(StoppingPolicy, ManyCoordinatesTakeMoreStartsAndMoreHits) {
+  for (const int coordinates : {4, 5, 6}) {
+    StoppingPolicy policy(options_for(1), true, false);
+    policy.plan_for_paths(coordinates, false);
+    const bool few = coordinates == 4;
+    EXPECT_EQ(policy.may_end({47, 47, 0, 47}), few);
+    EXPECT_TRUE(policy.may_end({48, 48, 0, 48}));
+    EXPECT_EQ(policy.ends({48, 48, 0, 48}, {{20, 0}, 1}), few) << "not clear";
+    EXPECT_TRUE(policy.ends({48, 48, 0, 48}, {{30, 0}, 1}));
+    EXPECT_TRUE(policy.ends({64, 64, 0, 48}, {{20, 0}, 1}));
+    EXPECT_EQ(policy.ends({100, 100, 0, 100}, {{39, 80}, 1, 50}), few);
+    EXPECT_TRUE(policy.ends({100, 100, 0, 100}, {{40, 0}, 1, 50}));
+    EXPECT_TRUE(policy.ends({100, 100, 0, 100}, {{39, 81}, 1, 50}));
   }
-  GeodesicOptions given = options_for(1);
-  given.starts = 50;
-  StoppingPolicy policy(given, true, false);
-  policy.plan_for_angles();
-  EXPECT_EQ(policy.left({}), 50);
+}
+
+// One geodesic is worth twice as many starts there. What was asked for stays so, and near targets
+// have a way of their own.
+TEST(StoppingPolicy, AnglesAndManyCoordinatesHaveAHigherLimit) {
+  for (const int coordinates : {3, 5}) {
+    const bool only_angles = coordinates == 3;
+    for (const int count : {1, 2}) {
+      StoppingPolicy policy(options_for(count), true, false);
+      const int before = policy.left({});
+      policy.plan_for_paths(coordinates, only_angles);
+      EXPECT_EQ(policy.left({}), count == 1 ? 2 * before : before);
+    }
+    GeodesicOptions given = options_for(1);
+    given.starts = 50;
+    StoppingPolicy policy(given, true, false);
+    policy.plan_for_paths(coordinates, only_angles);
+    EXPECT_EQ(policy.left({}), 50);
+    StoppingPolicy near(options_for(1), true, true);
+    const int before = near.left({});
+    near.plan_for_paths(coordinates, only_angles);
+    EXPECT_EQ(near.left({}), before);
+    EXPECT_TRUE(near.may_end({24, 24, 0, 24}));
+  }
 }
 
 // Crossings are made of what is known: that they find it again does not say that nothing is missed.

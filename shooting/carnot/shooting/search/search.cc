@@ -42,7 +42,7 @@ Search::Search(const BoundaryValueProblem& problem, const GeodesicOptions& optio
       discrete_(ladder_),
       seeks_abnormal_(may_have_abnormal_curves(problem)) {
   if (problem.dynamics.has_transcription()) {
-    if (!near_ && has_only_angles(problem.dynamics)) policy_.plan_for_angles();
+    policy_.plan_for_paths(problem.dynamics.dof, has_only_angles(problem.dynamics));
     return;
   }
   if (problem.dynamics.forced > 0 && !problem.dynamics.on_leaves) return;

@@ -33,8 +33,15 @@ constexpr Caution kCaution{.easy = 12, .starts = 16, .sure = 20, .with_crossings
 // six seeds) 31 are not the least that any run knows with kCaution, 20 of them after that had been
 // hit twenty times; 9 with half of these hits and the limit of other scenes, in 1.30 of the time;
 // and 1 with this, in twice the time of these. Of 600 answers for satellite none changes where 32
-// starts and half of these hits are asked for, in 1.09 of the time.
-constexpr Caution kCautionOfAngles{.easy = 32, .starts = 32, .sure = 200, .with_crossings = 600};
+// starts and half of these hits are asked for, in 1.09 of the time. 32 starts instead of 64, with
+// these hits, miss 2 of 600 least actions of falling-cat that 1000 starts or they find.
+constexpr Caution kCautionOfAngles{.easy = 64, .starts = 64, .sure = 200, .with_crossings = 600};
+// Where there are this many coordinates. Of 300 random targets of trailer2, coordinates up to 3,
+// the least actions of two are missed with kCaution and its limit, against 1000 starts; of one with
+// `easy` and `starts` of these, in 1.1 of the time, and of none with all of these and the limit
+// below, in 2.1 of the time. Of 200 others two are missed with kCaution, and none with these.
+constexpr int kManyCoordinates = 5;
+constexpr Caution kCautionOfMany{.easy = 48, .starts = 64, .sure = 40, .with_crossings = 120};
 // The least number by the ways to a near target, which take turns every eight starts
 // (NearTarget::way): 24 starts are twelve that go straight and six by each of two dilations. With
 // 16 near targets take 0.89 of the time, with 32 1.15, and nothing changes on these 200.
@@ -44,10 +51,10 @@ constexpr int kMinNear = 24;
 // trailer2 and one each of trailer1 and vehicle are missed and 7 of bicycle are not solved, in 0.59
 // of the time.
 constexpr int kMaxStarts = 480;
-// The same where every coordinate is an angle and one geodesic is wanted. Nearly half of the random
-// targets of falling-cat get that far. Of their 1,200 answers 2 are missed with 720, and 2 with
-// 1,920 and half of the hits above.
-constexpr int kMaxStartsOfAngles = 960;
+// The same where one geodesic is wanted, and every coordinate is an angle or there are many. Nearly
+// half of the random targets of falling-cat get that far. Of their 1,200 answers 2 are missed with
+// 720, and 2 with 1,920 and half of the hits above.
+constexpr int kMaxStartsWithCaution = 960;
 // The same where a target is near. Only targets so near that round-off parts their extremals into
 // many get that far, and a start takes long there: a vehicle to (0, 1e-10, 0, 0) takes 5 s with
 // 480.
@@ -120,9 +127,10 @@ void StoppingPolicy::plan_for(int scaled, int actuated) {
   if (!given_) limit_ = std::min(limit_, scaled + actuated);
 }
 
-void StoppingPolicy::plan_for_angles() {
-  caution_ = kCautionOfAngles;
-  if (!given_ && !wants_more_) limit_ = kMaxStartsOfAngles;
+void StoppingPolicy::plan_for_paths(int coordinates, bool only_angles) {
+  if (near_ || !(only_angles || coordinates >= kManyCoordinates)) return;
+  caution_ = only_angles ? kCautionOfAngles : kCautionOfMany;
+  if (!given_ && !wants_more_) limit_ = kMaxStartsWithCaution;
 }
 
 int StoppingPolicy::left(const SearchTally& tally) const {

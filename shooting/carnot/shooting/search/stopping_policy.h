@@ -39,8 +39,9 @@ class StoppingPolicy {
 
   // For starts of drift: so many of scaled drift, which are all tried, and at most so many more.
   void plan_for(int scaled, int actuated);
-  // For configurations of angles only, which take more caution and more starts.
-  void plan_for_angles();
+  // For paths of so many coordinates: many of them, or angles only, take more caution and more
+  // starts.
+  void plan_for_paths(int coordinates, bool only_angles);
 
   // More than the extremal of least action.
   [[nodiscard]] bool wants_more() const { return wants_more_; }
