@@ -39,7 +39,8 @@ constexpr Caution kCautionOfAngles{.easy = 64, .starts = 64, .sure = 200, .with_
 // Where there are this many coordinates. Of 300 random targets of trailer2, coordinates up to 3,
 // the least actions of two are missed with kCaution and its limit, against 1000 starts; of one with
 // `easy` and `starts` of these, in 1.1 of the time, and of none with all of these and the limit
-// below, in 2.1 of the time. Of 200 others two are missed with kCaution, and none with these.
+// below, in 2.3 of the time. Of 200 others two are missed with kCaution, and none with these, in
+// 2.1 of the time.
 constexpr int kManyCoordinates = 5;
 constexpr Caution kCautionOfMany{.easy = 48, .starts = 64, .sure = 40, .with_crossings = 120};
 // The least number by the ways to a near target, which take turns every eight starts
