@@ -54,10 +54,9 @@ only() {
 
 # Headers without code of their own.
 umbrellas() {
-  find "$@" -type f -name '*.h' | while read -r header; do
-    grep -qvE '^[[:space:]]*((//|#).*|(inline )?namespace.*|})?[[:space:]]*$' "$header" ||
-      echo "$header: only includes others"
-  done
+  find "$@" -type f -name '*.h' \
+    -exec grep -LvE '^[[:space:]]*((//|#).*|(inline )?namespace.*|})?[[:space:]]*$' {} + |
+    sed 's/$/: only includes others/'
 }
 
 # Prints what breaks a layer under the current folder.
