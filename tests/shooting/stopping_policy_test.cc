@@ -101,6 +101,25 @@ TEST(StoppingPolicy, EndsWhenTheLeastActionIsHitOftenEnough) {
   EXPECT_FALSE(policy.ends({12, 12, 0, 16}, {{12, 0}, 2}));
 }
 
+TEST(StoppingPolicy, PathsTakeMoreStartsThanOthers) {
+  StoppingPolicy policy(options_for(1), true, false);
+  const int limit = policy.left({});
+  policy.plan_for_paths(4, false);
+  EXPECT_FALSE(policy.may_end({23, 23, 0, 23}));
+  EXPECT_TRUE(policy.may_end({24, 24, 0, 18}));
+  EXPECT_FALSE(policy.may_end({24, 24, 0, 17}));
+  EXPECT_TRUE(policy.may_end({32, 32, 0, 0}));
+  EXPECT_TRUE(policy.ends({24, 24, 0, 24}, {{15, 0}, 1}));
+  EXPECT_FALSE(policy.ends({24, 24, 0, 24}, {{15, 0}, 2})) << "a rival";
+  EXPECT_TRUE(policy.ends({32, 32, 0, 32}, {{3, 0}, 2}));
+  EXPECT_EQ(policy.left({}), limit);
+  for (const int starts : {0, 8, 16, 32}) EXPECT_EQ(policy.round({starts, starts}), 8);
+  for (const int starts : {24, 28}) EXPECT_EQ(policy.round({starts, starts}), 4);
+  StoppingPolicy near(options_for(1), true, true);
+  near.plan_for_paths(4, false);
+  EXPECT_TRUE(near.may_end({24, 24, 0, 0}));
+}
+
 TEST(StoppingPolicy, AnglesTakeMoreStartsAndMoreHits) {
   StoppingPolicy policy(options_for(1), true, false);
   const Competition alone{{64, 0}, 1};

@@ -64,7 +64,7 @@ std::optional<LeastRelaxed> least_of(const BoundaryValueProblem& problem,
 
 int Search::intervals_of_round(int drawn) const {
   constexpr int kTurn = 8;     // starts
-  constexpr int kCoarse = 16;  // starts
+  constexpr int kCoarse = 24;  // starts
   const int turn = drawn / kTurn;
   // Most searches end on the coarsest grid. Those that go on take turns between it and the next
   // one, for each has extremals that the other lacks. On the targets of stopping_policy.cc, with up
@@ -81,9 +81,9 @@ int Search::intervals_of_round(int drawn) const {
 }
 
 std::vector<RelaxedStart> Search::next_starts(int count) {
-  // Lanes are filled, on two threads at most, and at first twice: most searches look at as many
-  // starts. What they do not look at is lost.
-  const int packs = tally_.drawn == 0 ? 2 : std::min(threads_, 2);
+  // Lanes are filled, on two threads at most, and at first three times: most searches look at as
+  // many starts. What they do not look at is lost.
+  const int packs = tally_.drawn == 0 ? 3 : std::min(threads_, 2);
   const int most = std::max(count, std::min(packs * kChainLanes, policy_.left(tally_)));
   std::vector<StartDraw> draws;
   for (int i = tally_.drawn; i < tally_.drawn + most; ++i) {

@@ -39,8 +39,8 @@ class StoppingPolicy {
 
   // For starts of drift: so many of scaled drift, which are all tried, and at most so many more.
   void plan_for(int scaled, int actuated);
-  // For paths of so many coordinates: many of them, or angles only, take more caution and more
-  // starts.
+  // For starts that are paths of so many coordinates. They are cheap, so there are more of them;
+  // many coordinates, or angles only, take more caution still, and a higher limit.
   void plan_for_paths(int coordinates, bool only_angles);
 
   // More than the extremal of least action.
