@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "carnot/numerics/linear_algebra.h"
 #include "carnot/numerics/pack.h"
@@ -19,6 +20,25 @@ using StageRows =
                   rows == 1 || (s != Eigen::Dynamic && s != 1) ? Eigen::RowMajor : Eigen::ColMajor,
                   rows,
                   most>;
+
+// What an iteration on the stages of a step of h from t begins with: their times t + c_i h, the
+// weights h omega_i of their rates, and stages from which any other is far. Stored in whole
+// registers, as the first sweep loads them: of numbers that come one by one it has to wait for all.
+// Flows of the vehicle take 0.96 of the time (Zen 5).
+template <int size, int s>
+CARNOT_FLATTEN [[gnu::noinline]] void packed_beginning(double t,
+                                                       double h,
+                                                       const double* c,
+                                                       const double* omega,
+                                                       double* times,
+                                                       double* weights,
+                                                       double* stages) {
+  using P = Pack<s>;
+  (P(t) + P(h) * P::load(c)).store(times);
+  (P(h) * P::load(omega)).store(weights);
+  const P far(std::numeric_limits<double>::max());
+  for (int k = 0; k < size; ++k) far.store(stages + k * s);
+}
 
 // Row k of `increments` <- A row k: the first guess from the last step.
 template <int size, int s>

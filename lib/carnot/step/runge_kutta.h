@@ -145,17 +145,15 @@ class RungeKutta {
 
   // Fixed point. True when the stages have settled.
   bool iterate(const Block& block, StepReport& report) {
-    for (int i = 0; i < kSize; ++i) {
-      for (int j = block.begin(); j < block.end(); ++j) {
-        work_.stages(i, j) = std::numeric_limits<T>::max();
-      }
-    }
     const IterationLimits<T> limits{work_.stop, most_iterations_, work_.with_newton};
     if constexpr (kRows) {
-      for (int j = 0; j < s; ++j) {
-        times_[j] = block.t + block.h * work_.tableau.c[j];
-        weights_[j] = block.h * work_.tableau.omega[j];
-      }
+      packed_beginning<kSize, s>(block.t,
+                                 block.h,
+                                 work_.tableau.c.data(),
+                                 work_.tableau.omega.data(),
+                                 times_.data(),
+                                 weights_.data(),
+                                 work_.stages.data());
       const StageData data{times_.data(),
                            work_.tableau.mu.data(),
                            weights_.data(),
@@ -171,6 +169,12 @@ class RungeKutta {
       if (!work_.with_newton) return work_.fail(RateStatus::kNotFinite, report);
       // One by one, which tells the reason, or goes on where only the pack could not.
       if (!work_.evaluate_all(block, report)) return false;
+    } else {
+      for (int i = 0; i < kSize; ++i) {
+        for (int j = block.begin(); j < block.end(); ++j) {
+          work_.stages(i, j) = std::numeric_limits<T>::max();
+        }
+      }
     }
     return iterate_one_by_one(block, limits, report);
   }
