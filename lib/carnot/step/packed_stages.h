@@ -42,8 +42,9 @@ CARNOT_FLATTEN [[gnu::noinline]] void packed_beginning(double t,
 
 // Row k of `increments` <- A row k: the first guess from the last step.
 template <int size, int s>
-CARNOT_FLATTEN [[gnu::noinline]] void packed_extrapolation(const double* columns,
+CARNOT_FLATTEN [[gnu::noinline]] void packed_extrapolation(const double* matrix,
                                                            double* increments) {
+  const auto columns = columns_of<s>(matrix);
   for (int k = 0; k < size; ++k) {
     combination<s>(columns, increments + k * s, Pack<s>(0)).store(increments + k * s);
   }
@@ -51,9 +52,10 @@ CARNOT_FLATTEN [[gnu::noinline]] void packed_extrapolation(const double* columns
 
 // The largest entry of each of the s combinations A row k, over the rows k.
 template <int size, int s>
-CARNOT_FLATTEN [[gnu::noinline]] void packed_sizes(const double* columns,
+CARNOT_FLATTEN [[gnu::noinline]] void packed_sizes(const double* matrix,
                                                    const double* rows,
                                                    double* largest) {
+  const auto columns = columns_of<s>(matrix);
   Pack<s> most(0);
   for (int k = 0; k < size; ++k) {
     most = max(most, abs(combination<s>(columns, rows + k * s, Pack<s>(0))));
@@ -86,6 +88,7 @@ CARNOT_FLATTEN [[gnu::noinline]] double packed_tangent_sweep(const double* mu,
                                                              const double* weights,
                                                              double* increments) {
   using P = Pack<s>;
+  const auto columns = columns_of<s>(mu);
   P largest_of_all(0);
   for (int c = 0; c < size; ++c) {
     P most(0);
@@ -93,8 +96,8 @@ CARNOT_FLATTEN [[gnu::noinline]] double packed_tangent_sweep(const double* mu,
     std::array<P, size> argument;
 #pragma GCC unroll 16
     for (int k = 0; k < size; ++k) {
-      argument[k] =
-          P(dz[c * size + k]) + combination<s>(mu, column + k * s, P(compensation[c * size + k]));
+      argument[k] = P(dz[c * size + k]) +
+                    combination<s>(columns, column + k * s, P(compensation[c * size + k]));
     }
     for (int r = 0; r < size; ++r) {
       const double* const row = jacobian + r * size * s;

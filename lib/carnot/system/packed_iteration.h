@@ -13,32 +13,45 @@
 
 namespace carnot {
 
-// sum + A x for an s x s matrix with its columns one after the other. Two chains of additions, for
-// the processor to overlap.
+// The columns of an s x s matrix, one after the other in memory. Loaded once for many products:
+// between two of them something is stored, after which the compiler would load them again.
 template <int s>
-[[gnu::always_inline]] inline Pack<s> combination(const double* columns,
+[[gnu::always_inline]] inline std::array<Pack<s>, s> columns_of(const double* matrix) {
+  std::array<Pack<s>, s> columns;
+#pragma GCC unroll 8
+  for (int j = 0; j < s; ++j) columns[j] = Pack<s>::load(matrix + j * s);
+  return columns;
+}
+
+// sum + A x for a matrix of these columns. Two chains of additions, for the processor to overlap.
+template <int s>
+[[gnu::always_inline]] inline Pack<s> combination(const std::array<Pack<s>, s>& columns,
                                                   const double* x,
                                                   const Pack<s>& sum) {
-  Pack<s> even = sum + Pack<s>::load(columns) * Pack<s>(x[0]);
-  Pack<s> odd = Pack<s>::load(columns + s) * Pack<s>(x[1]);
+  Pack<s> even = sum + columns[0] * Pack<s>(x[0]);
+  Pack<s> odd = columns[1] * Pack<s>(x[1]);
 #pragma GCC unroll 4
   for (int j = 2; j < s; j += 2) {
-    even += Pack<s>::load(columns + j * s) * Pack<s>(x[j]);
-    odd += Pack<s>::load(columns + (j + 1) * s) * Pack<s>(x[j + 1]);
+    even += columns[j] * Pack<s>(x[j]);
+    odd += columns[j + 1] * Pack<s>(x[j + 1]);
   }
   return even + odd;
 }
 
 // The stages U from the increments L: row k <- value_k + (compensation_k + mu L_k). use(k, U_k) is
-// called for each row. Returns the largest change of an entry.
+// called for each row. Returns the largest change of an entry. With the columns of mu loaded once
+// and the rows unrolled, a sweep of vehicle-cosine takes 0.84 of the time with AVX-512, 0.95 with
+// AVX2 and as long with SSE2 (Zen 5).
 template <int size, int s, class Use>
 [[gnu::always_inline]] inline double move_stages(const StageData& data,
                                                  double* change,
                                                  const Use& use) {
   using P = Pack<s>;
+  const auto mu = columns_of<s>(data.mu);
   P most(0);
+#pragma GCC unroll 16
   for (int k = 0; k < size; ++k) {
-    const P sum = combination<s>(data.mu, data.increments + k * s, P(data.compensation[k]));
+    const P sum = combination<s>(mu, data.increments + k * s, P(data.compensation[k]));
     const P u = P(data.value[k]) + sum;
     const P moved = abs(u - P::load(data.stages + k * s));
     u.store(data.stages + k * s);
