@@ -15,7 +15,8 @@ separately. Angles live on the cover: 0 and 2 pi are different ends, unless --mo
 extremal is checked by an independent integration at a tighter setting: its largest error at the end
 is "error" in the table and "endpoint_error" in the JSON. There, "hits" counts the starts that led to
 an extremal or a mirror partner, and "missed_estimate" is Chao's estimate of how many were not
-found, or null where starts say too little.
+found, at least 1 where the first is no minimum or was hit once only, or null where starts say too
+little.
 On failure "reason" is a code, in the order of how far the best attempt came:
 no-start-converged, singular-coordinates (most paths ran into one), guess-failed, not-refined,
 flow-failed, not-joined, not-verified, beyond-double (round-off exceeds the tolerance),

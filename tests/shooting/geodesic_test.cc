@@ -282,6 +282,22 @@ TEST(Geodesic, WithoutConstraints) {
   EXPECT_NEAR(report.geodesics[0].p0[1], 1 / std::sin(1.0), 1e-10);
 }
 
+// What is hit once may be anything, and a guess says nothing of what else there is.
+TEST(Geodesic, OneHitIsNotSureAndAGuessSaysNothing) {
+  const BoundaryValueProblem problem = test::sideways();
+  GeodesicOptions options;
+  options.starts = 2;  // the straight line collapses
+  const GeodesicReport one = find_geodesics(problem, options);
+  ASSERT_EQ(one.converged_starts, 1) << one.message;
+  EXPECT_GE(one.missed_estimate.value(), 1);
+  const GeodesicReport many = find_geodesics(problem);
+  ASSERT_EQ(many.status, GeodesicStatus::kConverged) << many.message;
+  EXPECT_LT(many.missed_estimate.value(), 1);
+  options = {};
+  options.guess = many.geodesics[0].p0;
+  EXPECT_FALSE(find_geodesics(problem, options).missed_estimate);
+}
+
 // One of hundreds of extremals. Without crossings 3 seeds of 12 find it, with them 22 of 24.
 // Round-off decides which paths lead where: each build finds it with other seeds.
 TEST(Geodesic, CrossingsFindTheLeastOfHundreds) {

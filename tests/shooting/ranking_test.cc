@@ -37,5 +37,21 @@ TEST(MissedEstimate, IsThatOfChao) {
   EXPECT_EQ(missed_estimate({1, 1, 1}), 3);
 }
 
+TEST(MissedEstimate, IsAtLeastOneWhereTheLeastIsNoMinimumOrWasHitOnce) {
+  Geodesic least;
+  least.label = Label::kLocallyMinimal;
+  least.hits = 7;
+  EXPECT_EQ(missed_estimate({7, 3, 5}, least), 0);
+  EXPECT_EQ(missed_estimate({1, 1, 1, 1, 2, 2, 9}, least), 4);
+  least.hits = 1;
+  EXPECT_EQ(missed_estimate({1, 3, 5}, least), 1);
+  for (const Label label : {Label::kConjugatePassed, Label::kNotMinimal}) {
+    least.label = label;
+    least.hits = 7;
+    EXPECT_EQ(missed_estimate({7, 3, 5}, least), 1);
+    EXPECT_EQ(missed_estimate({1, 1, 1, 1, 2, 2, 9}, least), 4);
+  }
+}
+
 }  // namespace
 }  // namespace carnot::internal::ranking_test

@@ -284,7 +284,10 @@ GeodesicReport find_without_limits(const BoundaryValueProblem& asked,
   report.starts = found.starts;
   report.converged_starts = found.converged;
   report.distinct_hit = static_cast<int>(found.hits.size());
-  if (found.counted) report.missed_estimate = missed_estimate(found.hits);
+  if (found.counted && options.guess.empty()) {
+    report.missed_estimate = list.empty() ? missed_estimate(found.hits)
+                                          : missed_estimate(found.hits, report.geodesics.front());
+  }
   report.status = list.empty() ? GeodesicStatus::kNotConverged : GeodesicStatus::kConverged;
   if (found.blocked > 0) report.message = blocked_starts(found.blocked, found.starts);
   if (!list.empty() && report.geodesics.front().label == Label::kAbnormal) {

@@ -58,8 +58,10 @@ struct GeodesicReport {
   int starts = 0;
   int converged_starts = 0;
   int distinct_hit = 0;  // extremals, up to symmetry, that starts led to
-  // How many more there may be, by Chao's estimate. Nothing where starts say too little for one: of
-  // scenes without a transcription, unless the least action was hit often and nothing once only.
+  // How many more there may be, by Chao's estimate; at least one where the first of the list is no
+  // minimum or was hit once only. Nothing where starts say too little for an estimate: with a
+  // guess, and of scenes without a transcription, unless the least action was hit often and nothing
+  // once only.
   std::optional<double> missed_estimate;
   double elapsed_seconds = 0;
 };

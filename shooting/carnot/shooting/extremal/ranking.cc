@@ -44,4 +44,9 @@ double missed_estimate(const std::vector<int>& hits) {
   return twice > 0 ? once * once / (2 * twice) : once * std::max(0.0, once - 1) / 2;
 }
 
+double missed_estimate(const std::vector<int>& hits, const Geodesic& least) {
+  const bool minimal = least.label != Label::kConjugatePassed && least.label != Label::kNotMinimal;
+  return std::max(missed_estimate(hits), minimal && least.hits != 1 ? 0.0 : 1.0);
+}
+
 }  // namespace carnot::internal
