@@ -354,6 +354,15 @@ TEST(NaturalScales, OfAWheelbaseOfOneAreOne) {
   EXPECT_TRUE(natural_scales(test::unicycle({0, 0, 0}, {3, 1, 0})).trivial());
 }
 
+// s tan(s + delta) = 1 where the wheel is turned by delta at one end, so s is 0.86 for small ones.
+TEST(NaturalScales, OfABicycleDoNotDependOnHowStraightItEnds) {
+  constexpr double kBisected = 1e-5;
+  for (const double delta : {1e-9, 1e-3, -1e-3, 0.1, -1.0}) {
+    const double s = natural_scales(test::bicycle({1, 1, 1, delta})).q[0];
+    EXPECT_NEAR(s * std::tan(s + std::abs(delta)), 1, 10 * kBisected) << delta;
+  }
+}
+
 TEST(NaturalScales, AreThoseOfTheScene) {
   BoundaryValueProblem problem = test::long_vehicle({0, 0, 0, 0}, {0, 1, 0, 0}, 100);
   problem.time = 4;

