@@ -19,9 +19,9 @@ void rank(std::vector<Geodesic>& list);
 double missed_estimate(const std::vector<int>& hits);
 
 // The same where `least` has the least action of them. At least one where `least` is no minimum,
-// for then there is less; and where it was hit once only, of which the estimate makes nothing. Of
-// 800 searches for bicycles with positions within 15, 14 did not find the least known action. The
-// estimate warned of seven of them, and with this of 13.
+// for then there is less; and where it was hit once only, of which the estimate makes nothing. When
+// bicycles were searched for in poor scales, 14 of 800 searches did not find the least known
+// action. The estimate warned of seven of them, and with this of 13.
 double missed_estimate(const std::vector<int>& hits, const Geodesic& least);
 
 }  // namespace carnot::internal
