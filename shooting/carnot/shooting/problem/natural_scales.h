@@ -6,12 +6,12 @@
 //   tau   T.
 //   u     1 for an angle, and for all coordinates where holonomic constraints tie them together.
 //         Let s be what one radian is worth: s^2 is the mean of M_jj over the angles that have
-//         mass, or what moves those that have none, within u of the ends. Then u = s / sqrt(M_jj)
-//         for other coordinates that have mass, such as the length of a wheelbase; u = s max
-//         sqrt(d2H/dp_j^2) near the ends for those that have none, which is how far they go on an
-//         extremal of length s. The latter holds for all coordinates where a control tells
-//         velocities. Without any angle s is such that the ends are 2 u apart: so a short problem
-//         of a nilpotent structure is its dilation (dilation.h).
+//         mass. Where none has, it is that of 1 / (d2H/dp_j^2), the least within u of the ends.
+//         Then u = s / sqrt(M_jj) for other coordinates that have mass, such as the length of a
+//         wheelbase; u = s max sqrt(d2H/dp_j^2) near the ends for those that have none, which is
+//         how far they go on an extremal of length s. The latter holds for all coordinates where a
+//         control tells velocities. Without any angle s is such that the ends are 2 u apart: so a
+//         short problem of a nilpotent structure is its dilation (dilation.h).
 //   a     s^2 / tau.
 //
 // Scenes without a transcription have no metric. There u is how far apart the ends are or, where it
